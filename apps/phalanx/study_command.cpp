@@ -128,7 +128,7 @@ void report_quarantined(const std::string& out, const Study& study, const Queued
     const auto& [index, log] = queued.quarantined[i];
     write_text_file(log_of_point(out, index), log + "\n");
     if (i < kMostLines)
-      print_line(fmt::format("point {} ({}) failed {} times: {}; see {}", index,
+      print_line(fmt::format("point {} ({}) failed {} times, first {}; see {}", index,
                              point_text(study, study_point(study, index)), kFailuresToQuarantine,
                              log.substr(0, log.find('\n')), log_of_point(out, index).string()));
   }

@@ -36,7 +36,8 @@ inline constexpr int kMostQuarantinedLogs = 100;
 /// A point that was given up.
 struct QuarantinedPoint {
   int index = 0;
-  std::string log;  ///< how its last process ended, and the end of what it wrote
+  std::string
+      log;  ///< for each failure the machine, how the process ended or what was thrown, and the end of what it wrote
 };
 
 /// Options of run_on_queue().
@@ -92,7 +93,7 @@ struct QueueWork {
   int finished = 0;    ///< points whose results it stored
   int failed = 0;      ///< times that a point's process crashed or a point took too long, or its trial threw
   bool whole = false;  ///< false: `stopped`
-  bool given_back = false;  ///< the points that it still had; else their leases end
+  bool given_back = false;  ///< the points that it still had; else the server was away, and their leases end
 };
 
 /// @returns an hour, or twenty times what the most trials of a point take at 0.05 s a trial, if that is longer [s].

@@ -37,19 +37,27 @@ void replace_journal(const std::filesystem::path& file, const JournalContent& co
   synchronise_folder_of(file);
 }
 
-Journal::Journal(std::filesystem::path file, const JournalHeader& header, bool restart)
+Journal::Journal(std::filesystem::path file)
     : file_(std::move(file)),
       descriptor_(::open(file_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644)) {
   if (descriptor_ < 0) fail("opened");
   try {
     refuse_other_than_a_file();
     lock();
-    if (restart && ::ftruncate(descriptor_, 0) != 0) fail("emptied");
-    take_up(header);
   } catch (...) {
     ::close(descriptor_);
     throw;
   }
+}
+
+Journal::Journal(std::filesystem::path file, const JournalHeader& header, bool restart)
+    : Journal(std::move(file)) {
+  begin(header, restart);
+}
+
+void Journal::begin(const JournalHeader& header, bool restart) {
+  if (restart && ::ftruncate(descriptor_, 0) != 0) fail("emptied");
+  take_up(header);
 }
 
 Journal::~Journal() { ::close(descriptor_); }

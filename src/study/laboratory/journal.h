@@ -57,9 +57,14 @@ class Journal {
   /// @throws std::invalid_argument with the remedy if another process holds it or it belongs to another study
   /// @throws std::runtime_error naming the file and the system's reason if it cannot be written
   Journal(std::filesystem::path file, const JournalHeader& header, bool restart);
+  /// Creates the file or opens an existing one, and locks it; its content stays until begin().
+  explicit Journal(std::filesystem::path file);
   ~Journal();
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
+
+  /// Takes up the content as the first constructor does. Once.
+  void begin(const JournalHeader& header, bool restart);
 
   /// @returns the points that it held when it was opened.
   [[nodiscard]] const std::vector<PointResult>& finished() const noexcept { return finished_; }

@@ -94,9 +94,11 @@ bool read_available(int descriptor, std::string& text) {
   return true;
 }
 
-[[noreturn]] void throw_system_error() {
-  throw std::system_error(errno, std::generic_category(),
-                          "a process for the points of the study cannot be started (--jobs, ulimit -u)");
+/// @param limit  the shell's name of the limit that may be the cause
+[[noreturn]] void throw_system_error(const char* limit) {
+  throw std::system_error(
+      errno, std::generic_category(),
+      fmt::format("a process for the points of the study cannot be started (fewer --jobs, or {})", limit));
 }
 
 }  // namespace
@@ -104,16 +106,17 @@ bool read_available(int descriptor, std::string& text) {
 PointProcess::PointProcess(const Study& study, const TrialFunction& trial) : answers_(-1), log_(-1) {
   std::array<int, 2> sockets{};
   std::array<int, 2> pipe{};
-  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets.data()) != 0) throw_system_error();
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets.data()) != 0)
+    throw_system_error("ulimit -n");
   Descriptor here(sockets[0]);
   const Descriptor there(sockets[1]);
-  if (::pipe2(pipe.data(), O_CLOEXEC) != 0) throw_system_error();
+  if (::pipe2(pipe.data(), O_CLOEXEC) != 0) throw_system_error("ulimit -n");
   Descriptor log_here(pipe[0]);
   const Descriptor log_there(pipe[1]);
   for (const int descriptor : {here.value(), log_here.value()}) ::fcntl(descriptor, F_SETFL, O_NONBLOCK);
   const pid_t parent = ::getpid();
   process_ = ::fork();
-  if (process_ < 0) throw_system_error();
+  if (process_ < 0) throw_system_error("ulimit -u");
   if (process_ == 0) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() != parent) ::_exit(1);  // the parent ended before the call

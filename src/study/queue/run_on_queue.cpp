@@ -33,32 +33,37 @@ std::vector<PointResult> in_order(const Results& results) {
   return list;
 }
 
-/// Stores the results of a journal that the queue lacks, in portions that one statement takes.
-/// @param results  those of the queue, to which these are added
-/// @throws std::invalid_argument if the journal and the queue have different results of a point, or points in the
-/// queue were measured with mathematical functions that round differently from this machine's
-void store_missing(StudyQueue& queue, const std::vector<PointResult>& journal, Results& results) {
-  constexpr std::size_t kPortion = 500;
-  std::vector<MeasuredPoint> portion;
-  bool claimed = false;
-  const auto send = [&] {
-    if (!portion.empty() && !std::exchange(claimed, true)) queue.claim_for_journal();
-    queue.finish(portion);
-    portion.clear();
-  };
+/// @returns the results of a journal that the queue lacks.
+/// @throws std::invalid_argument if the journal and the queue have different results of a point
+std::vector<MeasuredPoint> missing_of(const std::vector<PointResult>& journal, const Results& stored) {
+  std::vector<MeasuredPoint> missing;
   for (const PointResult& result : journal) {
-    const auto [known, is_new] = results.emplace(result.index, result);
-    if (!is_new && result_line(known->second) != result_line(result))
+    std::string line = result_line(result);
+    if (const auto known = stored.find(result.index); known != stored.end()) {
+      if (result_line(known->second) == line) continue;
       throw std::invalid_argument(fmt::format(
           "point {} has different results in the journal and in the queue; use another --out folder, "
           "or measure the study again (--restart)",
           result.index));
-    if (!is_new) continue;
-    portion.push_back({.index = result.index, .seconds = 0.0, .result = result_line(result)});
-    portion.back().result.pop_back();
-    if (portion.size() == kPortion) send();
+    }
+    line.pop_back();
+    missing.push_back({.index = result.index, .seconds = 0.0, .result = std::move(line)});
   }
-  send();
+  return missing;
+}
+
+/// Stores results of a journal, in portions that one statement takes.
+/// @throws std::invalid_argument if points in the queue were measured with mathematical functions that round differently
+/// from this machine's
+void store(StudyQueue& queue, const std::vector<MeasuredPoint>& missing) {
+  constexpr std::ptrdiff_t kPortion = 500;
+  if (missing.empty()) return;
+  queue.claim_for_journal();
+  for (auto begin = missing.begin(); begin != missing.end();) {
+    const auto end = begin + std::min(kPortion, std::distance(begin, missing.end()));
+    queue.finish({begin, end});
+    begin = end;
+  }
 }
 
 /// Watches the queue until nothing is left to measure.
@@ -145,22 +150,27 @@ class Watch {
 
 QueuedResults run_on_queue(const Study& study, const StudyCheck& check, const std::filesystem::path& out,
                            const QueueServer& server, const QueueRunOptions& options) {
-  StudyQueue queue(server);  // first: an address, a role or tables that are refused must not change a file
+  StudyQueue queue(server);  // first: an address or tables that are refused must not change a file
   queue.prepare(options.lease_s);
   const JournalHeader header{.study = study, .inputs = check_study(study, check), .commit = options.commit};
   prepare_output_folder(out);
   const auto file = out / journal_name(1, 1);
-  const Journal journal(file, header, options.restart);  // no other process may write the file
+  Journal journal(file);  // no other process may write the file
+  if (!options.restart) journal.begin(header, false);
   Results results;
   for (const PointResult& result : journal.finished()) results.emplace(result.index, result);
   QueuedResults queued;
   std::exception_ptr failure;
+  bool begun = !options.restart;
   try {
     queue.create(header, options.lease_s, options.restart);
+    if (options.restart) journal.begin(header, true);  // not before: the server may refuse to begin again
+    begun = true;
     Results stored;
     queue.collect(stored);
-    store_missing(queue, journal.finished(), stored);
+    const std::vector<MeasuredPoint> missing = missing_of(journal.finished(), stored);
     results.merge(stored);
+    store(queue, missing);
     if (options.retry) queue.retry_quarantined();
     remove_study_outputs(out);
     Watch watch(queue, study, server, options);
@@ -175,11 +185,11 @@ QueuedResults run_on_queue(const Study& study, const StudyCheck& check, const st
   queued.results = in_order(results);
   queued.whole = static_cast<int>(results.size()) == point_count(study);
   try {
-    replace_journal(file, {.header = header, .points = queued.results});
+    if (begun) replace_journal(file, {.header = header, .points = queued.results});
   } catch (...) {
     if (!failure) throw;
   }
-  if (failure) std::rethrow_exception(failure);  // the journal has what was collected until then
+  if (failure) std::rethrow_exception(failure);
   return queued;
 }
 

@@ -41,11 +41,11 @@ constexpr const char* kTables[] = {
     R"(CREATE TABLE IF NOT EXISTS phalanx.workers (
       id bigint GENERATED ALWAYS AS IDENTITY PRIMARY KEY,
       study bigint NOT NULL REFERENCES phalanx.studies ON DELETE CASCADE,
-      place text NOT NULL, cpu text NOT NULL, jobs integer NOT NULL,
+      host text NOT NULL, place text NOT NULL, cpu text NOT NULL, jobs integer NOT NULL,
       seen timestamptz NOT NULL DEFAULT clock_timestamp(), ended timestamptz))",
     R"(CREATE TABLE IF NOT EXISTS phalanx.points (
       study bigint NOT NULL REFERENCES phalanx.studies ON DELETE CASCADE, point integer NOT NULL,
-      failures integer NOT NULL DEFAULT 0, failed_by bigint, worker bigint, lease_end timestamptz,
+      failures integer NOT NULL DEFAULT 0, failed_on text, failed_at timestamptz, worker bigint, lease_end timestamptz,
       seconds double precision, finished_at timestamptz, result text, log text,
       PRIMARY KEY (study, point)) WITH (fillfactor = 70, autovacuum_vacuum_scale_factor = 0.01))",
     R"(CREATE INDEX IF NOT EXISTS points_unfinished ON phalanx.points (study, point) WHERE result IS NULL)",
@@ -54,16 +54,20 @@ constexpr const char* kTables[] = {
 
 // A lease that is not over counts. After a start of the server every lease counts for its whole length again: the
 // workers could not renew it while the server was away.
-// A point that failed is left to other workers while one of them lives: the machine may be the cause.
+// A point that failed is left to other machines for a lease, if a worker of one lives: the machine may be the cause.
 // Materialized: a plan that executed the selection for each row would take more than `most`.
 constexpr const char* kTake = R"(WITH next AS MATERIALIZED (
     SELECT point FROM phalanx.points
     WHERE study = :study AND result IS NULL AND failures < :most_failures
       AND (lease_end IS NULL OR (lease_end < clock_timestamp() AND
            pg_postmaster_start_time() + make_interval(secs => CAST(:lease AS double precision)) < clock_timestamp()))
-      AND (failed_by IS DISTINCT FROM :worker OR NOT EXISTS (
-           SELECT 1 FROM phalanx.workers WHERE workers.study = :study AND id <> :worker AND ended IS NULL
-             AND seen + make_interval(secs => CAST(:lease AS double precision)) > clock_timestamp()))
+      AND (failed_on IS DISTINCT FROM (SELECT host FROM phalanx.workers WHERE id = :worker)
+        OR failed_at + make_interval(secs => CAST(:lease AS double precision)) < clock_timestamp()
+        OR NOT EXISTS (
+           SELECT 1 FROM phalanx.workers WHERE workers.study = :study AND ended IS NULL
+             AND host <> (SELECT host FROM phalanx.workers WHERE id = :worker)
+             AND greatest(seen, pg_postmaster_start_time())
+               + make_interval(secs => CAST(:lease AS double precision)) > clock_timestamp()))
     ORDER BY point LIMIT :most FOR UPDATE SKIP LOCKED)
   UPDATE phalanx.points
   SET worker = :worker, lease_end = clock_timestamp() + make_interval(secs => CAST(:lease AS double precision))
@@ -118,6 +122,9 @@ std::string remedy_of(const std::string& why) {
   if (why.find("root certificate file") != std::string::npos)
     return "; put the certificate of the server's authority there, or name its file in the address "
            "(?sslrootcert=FILE)";
+  if (why.find("permission denied for database") != std::string::npos)
+    return "; the role makes the schema phalanx the first time: let its administrator make the role the "
+           "database's owner (createdb --owner)";
   if (why.find("permission denied") != std::string::npos)
     return "; connect as the role that owns the tables of the schema phalanx, or let its owner grant the "
            "role what it needs";
@@ -126,10 +133,10 @@ std::string remedy_of(const std::string& why) {
 
 std::string libm_here() { return fmt::format("{:016x}", libm_fingerprint()); }
 
-std::string place_of_this_process() {
+std::string host_here() {
   std::array<char, 256> host{};
   ::gethostname(host.data(), host.size() - 1);
-  return plain(fmt::format("{} {}", host.data(), ::getpid()));
+  return plain(host.data());
 }
 
 std::string header_text_of(const JournalHeader& header) {
@@ -180,7 +187,10 @@ struct StudyQueue::Session {
 };
 
 StudyQueue::StudyQueue(const QueueServer& server)
-    : server_(server), connection_(queue_connection(server.url)), worker_place_(place_of_this_process()) {
+    : server_(server),
+      connection_(queue_connection(server.url)),
+      worker_host_(host_here()),
+      worker_place_(fmt::format("{} {}", worker_host_, ::getpid())) {
   try {
     session_ = std::make_unique<Session>(connection_);
   } catch (const soci::soci_error& error) {
@@ -375,18 +385,17 @@ void StudyQueue::join(const JournalHeader& header, int jobs) {
   attempt([&](Session& session) {
     soci::transaction transaction(session.sql);
     claim_libm(session);
-    session.sql
-        << R"(INSERT INTO phalanx.workers (study, place, cpu, jobs) VALUES (:study, :place, :cpu, :jobs)
-                      RETURNING id)",
-        soci::into(worker_), soci::use(study_, "study"), soci::use(worker_place_, "place"),
-        soci::use(cpu, "cpu"), soci::use(jobs, "jobs");
+    session.sql << R"(INSERT INTO phalanx.workers (study, host, place, cpu, jobs)
+                      VALUES (:study, :host, :place, :cpu, :jobs) RETURNING id)",
+        soci::into(worker_), soci::use(study_, "study"), soci::use(worker_host_, "host"),
+        soci::use(worker_place_, "place"), soci::use(cpu, "cpu"), soci::use(jobs, "jobs");
     transaction.commit();
   });
 }
 
 void StudyQueue::retry_quarantined() {
   attempt([&](Session& session) {
-    session.sql << "UPDATE phalanx.points SET failures = 0, failed_by = NULL, log = NULL WHERE study = "
+    session.sql << "UPDATE phalanx.points SET failures = 0, failed_on = NULL, log = NULL WHERE study = "
                    ":study AND result IS NULL AND failures > 0",
         soci::use(study_, "study");
   });
@@ -441,8 +450,9 @@ void StudyQueue::finish(const std::vector<MeasuredPoint>& measured) {
 void StudyQueue::fail(int point, const std::string& log) {
   const std::string text = plain(fmt::format("on {}: {}", worker_place_, log));
   attempt([&](Session& session) {
-    session.sql << R"(UPDATE phalanx.points SET failures = failures + 1, failed_by = :worker, worker = NULL,
-                        lease_end = NULL, log = concat_ws(E'\n\n', log, CAST(:log AS text))
+    session.sql << R"(UPDATE phalanx.points SET failures = failures + 1, worker = NULL, lease_end = NULL,
+                        failed_on = (SELECT host FROM phalanx.workers WHERE id = :worker),
+                        failed_at = clock_timestamp(), log = concat_ws(E'\n\n', log, CAST(:log AS text))
                       WHERE study = :study AND point = :point AND worker = :worker AND result IS NULL)",
         soci::use(text, "log"), soci::use(study_, "study"), soci::use(point, "point"),
         soci::use(worker_, "worker");

@@ -53,8 +53,8 @@ class StudyQueue {
   /// Makes this connection a worker's. @throws std::invalid_argument as work_on_queue()
   void join(const JournalHeader& header, int jobs);
 
-  /// Takes up to `most` points, lowest first, that have no result and no valid lease. A point whose last failure was
-  /// this worker's is left to the others while one lives.
+  /// Takes up to `most` points, lowest first, that have no result and no valid lease. A point that failed on this
+  /// machine is left to other machines for a lease, if a worker of one lives.
   [[nodiscard]] std::vector<int> take(int most);
   /// Renews the leases of these points of this worker.
   void renew(const std::vector<int>& points);
@@ -98,6 +98,7 @@ class StudyQueue {
   QueueServer server_;
   std::string connection_;
   std::unique_ptr<Session> session_;
+  std::string worker_host_;
   std::string worker_place_;
   long long study_ = 0;
   long long worker_ = 0;

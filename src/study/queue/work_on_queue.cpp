@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <deque>
+#include <exception>
 #include <memory>
 #include <set>
 #include <stdexcept>
@@ -80,8 +81,10 @@ class Worker {
     }
   }
 
-  /// Stores what is measured and gives the other points back. Never throws: else their leases end.
-  void end() noexcept {
+  /// Stores what is measured and gives the other points back, or their leases end.
+  /// @returns why the queue does not take what was measured though it is there; null: it does, or it is away
+  [[nodiscard]] std::exception_ptr end() noexcept {
+    std::exception_ptr refused;
     try {
       queue_.try_though_stopped();
       for (const Process& process : processes_) {
@@ -91,12 +94,19 @@ class Worker {
         }
       }
       for (auto& process : processes_) process.reset();
-      const bool stored = store_at_end();
+      try {
+        store();
+      } catch (const QueueStopped&) {
+        throw;
+      } catch (...) {
+        refused = std::current_exception();
+      }
       queue_.leave({held_.begin(), held_.end()});
-      work_.given_back = stored;
+      work_.given_back = true;
     } catch (...) {
       work_.given_back = false;
     }
+    return refused;
   }
 
   [[nodiscard]] const QueueWork& work() const { return work_; }
@@ -162,9 +172,16 @@ class Worker {
     for (Process& process : processes_) {
       if (!process) continue;
       std::vector<PointAnswer> answers = process->read();
-      for (PointAnswer& answer : answers) take_result(answer);
+      for (PointAnswer& answer : answers) {
+        time_.add(answer.seconds);
+        if (!answer.failed) measured_.push_back(measured(answer));
+      }
       for (const PointAnswer& answer : answers) {  // last: this may throw
-        if (answer.failed) fail(answer.index, answer.text);
+        if (answer.failed) {
+          fail(answer.index, answer.text);
+        } else {
+          failures_in_a_row_ = 0;
+        }
       }
       process->pass(passed, limit_s_);
       if (process->ended()) replace(process);
@@ -173,13 +190,6 @@ class Worker {
 
   static MeasuredPoint measured(PointAnswer& answer) {
     return {.index = answer.index, .seconds = answer.seconds, .result = std::move(answer.text)};
-  }
-
-  void take_result(PointAnswer& answer) {
-    time_.add(answer.seconds);
-    if (answer.failed) return;
-    failures_in_a_row_ = 0;
-    measured_.push_back(measured(answer));
   }
 
   /// The process has ended: the point that it measured fails, the others are given to the next one.
@@ -208,18 +218,6 @@ class Worker {
           "{} failures without a result between them, the last of point {}: {}; this worker ends, "
           "see whether its machine has room, memory and the files of the study",
           kMostFailuresInARow, index, line));
-  }
-
-  /// @returns whether the queue has what was measured
-  bool store_at_end() {
-    try {
-      store();
-      return true;
-    } catch (const QueueStopped&) {
-      throw;
-    } catch (...) {  // a result differs: the points can still be given back
-      return false;
-    }
   }
 
   void store() {
@@ -286,10 +284,10 @@ QueueWork work_on_queue(const Study& study, const StudyCheck& check, const Trial
     worker.run();
   } catch (const QueueStopped&) {  // while the server is away
   } catch (...) {
-    worker.end();
+    static_cast<void>(worker.end());
     throw;
   }
-  worker.end();
+  if (const std::exception_ptr refused = worker.end()) std::rethrow_exception(refused);
   return worker.work();
 }
 

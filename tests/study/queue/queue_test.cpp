@@ -187,28 +187,29 @@ TEST_F(StudyQueueTest, ATrialThatThrowsFailsItsPoint) {
   EXPECT_EQ(std::count(log.begin(), log.end(), '?'), kFailuresToQuarantine) << log;
 }
 
-TEST_F(StudyQueueTest, AFailedPointIsLeftToAnotherWorkerWhileOneLives) {
+TEST_F(StudyQueueTest, AFailedPointIsLeftToAnotherMachineWhileOneWorks) {
   create();
   StudyQueue one(address());
+  StudyQueue beside(address());
   StudyQueue other(address());
-  one.join(header(), 1);
-  other.join(header(), 1);
+  for (StudyQueue* worker : {&one, &beside, &other}) worker->join(header(), 1);
+  sql("UPDATE phalanx.workers SET host = 'another' WHERE id = (SELECT max(id) FROM phalanx.workers)");
   ASSERT_THAT(one.take(1), ElementsAre(0));
   one.fail(0, "no room in /tmp");
   EXPECT_THAT(one.take(1), ElementsAre(1));
+  EXPECT_THAT(beside.take(1), ElementsAre(2)) << "on the same machine";
   EXPECT_THAT(other.take(1), ElementsAre(0));
   other.fail(0, "out of memory");
-  EXPECT_THAT(one.take(1), ElementsAre(0)) << "the last failure was the other's";
+  EXPECT_THAT(one.take(1), ElementsAre(0)) << "the last failure was on the other machine";
   one.give_back({0, 1});
+  beside.leave({2});
   EXPECT_THAT(other.take(1), ElementsAre(1)) << "given back";
   one.leave({});
-  EXPECT_THAT(other.take(1), ElementsAre(0)) << "no other worker lives";
+  EXPECT_THAT(other.take(1), ElementsAre(0)) << "no other machine works";
   other.fail(0, "out of memory");
-  const QueuedResults queued = [&] {
-    other.leave({1});
-    static_cast<void>(work(testing::synthetic_trial));
-    return run();
-  }();
+  other.leave({1});
+  EXPECT_EQ(work(testing::synthetic_trial).finished, 11);
+  const QueuedResults queued = run();
   ASSERT_EQ(queued.quarantined.size(), 1U);
   EXPECT_THAT(queued.quarantined[0].log, AllOf(HasSubstr("no room in /tmp"), HasSubstr("out of memory")));
 }
@@ -407,7 +408,13 @@ TEST_F(StudyQueueTest, AnEndedLeaseGoesToAnotherWorkerWhoseResultCounts) {
   other.finish({{.index = 0, .seconds = 1.0, .result = "{\"point\":0}"}});
   cut_off.finish({{.index = 0, .seconds = 2.0, .result = "{\"point\":0}"}});
   EXPECT_EQ(number("SELECT CAST(seconds AS integer) FROM phalanx.points WHERE point = 0"), 1);
-  EXPECT_THROW(cut_off.finish({{.index = 0, .seconds = 2.0, .result = "{}"}}), std::runtime_error);
+  sql("UPDATE phalanx.workers SET place = 'elsewhere 7' WHERE id = (SELECT max(id) FROM phalanx.workers)");
+  try {
+    cut_off.finish({{.index = 0, .seconds = 2.0, .result = "{}"}});
+    ADD_FAILURE() << "two machines compute differently";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("that of the first result (elsewhere 7)"));
+  }
 }
 
 TEST_F(StudyQueueTest, ARenewalKeepsOnlyWhatTheWorkerKnowsOf) {
@@ -579,6 +586,24 @@ TEST_F(StudyQueueTest, ARestartThatCannotReachTheServerKeepsTheJournal) {
   EXPECT_THROW(static_cast<void>(run_on_queue(study_, testing::no_inputs, alone_.path(), nowhere,
                                               {.commit = "test", .restart = true})),
                std::runtime_error);
+  EXPECT_EQ(read_journal(alone_ / "points.jsonl").points.size(), 12U);
+}
+
+TEST_F(StudyQueueTest, ARestartThatTheServerRefusesKeepsTheJournal) {
+  create();
+  static_cast<void>(alone());
+  sql("CREATE ROLE reader LOGIN");
+  sql("GRANT USAGE ON SCHEMA phalanx TO reader");
+  sql("GRANT SELECT ON ALL TABLES IN SCHEMA phalanx TO reader");
+  QueueServer reader = address();
+  reader.url.replace(reader.url.find("//") + 2, reader.url.find('@') - reader.url.find("//") - 2, "reader");
+  try {
+    static_cast<void>(
+        run_on_queue(study_, testing::no_inputs, alone_.path(), reader, {.commit = "test", .restart = true}));
+    ADD_FAILURE() << "the role may not remove the study";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("permission denied"), HasSubstr("the role that owns")));
+  }
   EXPECT_EQ(read_journal(alone_ / "points.jsonl").points.size(), 12U);
 }
 

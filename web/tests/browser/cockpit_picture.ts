@@ -27,8 +27,8 @@ try {
   await cockpit.untilLater(kCurves);
   const holds = (digit: number) =>
     cockpit.stream.newest!.contact.some(({ segment, touching, force }) => Math.floor(segment / kSegments) === digit && touching && force > kFirm);
-  // A hold from its beginning: a picture takes a second.
-  await until("an open hand", () => !holds(0) && !holds(1), () => cockpit.brief());
+  // The picture takes a second, so it is begun when a hold begins.
+  await until("no firm hold", () => !holds(0) && !holds(1), () => cockpit.brief());
   await until("a firm thumb and index finger", () => holds(0) && holds(1), () => cockpit.brief());
   await page.screenshot({ path: resolve(out) });
 } finally {
