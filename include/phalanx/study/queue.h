@@ -36,8 +36,8 @@ inline constexpr int kMostQuarantinedLogs = 100;
 /// A point that was given up.
 struct QuarantinedPoint {
   int index = 0;
-  std::string
-      log;  ///< for each failure the machine, how the process ended or what was thrown, and the end of what it wrote
+  /// For each failure the machine, how the process ended or what was thrown, and the end of what it wrote.
+  std::string log;
 };
 
 /// Options of run_on_queue().

@@ -4,6 +4,7 @@
 import { mkdtempSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
+import { digitOfSegment } from "../../src/state/channels";
 import { CockpitPage } from "./support/cockpit_page";
 import { addressOf, runStation, slowMotion } from "./support/program";
 import { until } from "./support/until";
@@ -12,7 +13,6 @@ import { launch } from "./view3d_page/browser";
 const kScreen = { width: 1440, height: 900 };
 const kFirm = 1.5; // [N]
 const kCurves = 10; // that the plot shows [s]
-const kSegments = 3; // of a digit
 
 const [out = "cockpit.png"] = process.argv.slice(2);
 const work = mkdtempSync(join(tmpdir(), "phalanx-cockpit-picture-"));
@@ -26,7 +26,7 @@ try {
   await cockpit.untilRunning();
   await cockpit.untilLater(kCurves);
   const holds = (digit: number) =>
-    cockpit.stream.newest!.contact.some(({ segment, touching, force }) => Math.floor(segment / kSegments) === digit && touching && force > kFirm);
+    cockpit.stream.newest!.contact.some(({ segment, touching, force }) => digitOfSegment(segment) === digit && touching && force > kFirm);
   // The picture takes a second, so it is begun when a hold begins.
   await until("no firm hold", () => !holds(0) && !holds(1), () => cockpit.brief());
   await until("a firm thumb and index finger", () => holds(0) && holds(1), () => cockpit.brief());
