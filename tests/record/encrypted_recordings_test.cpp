@@ -33,6 +33,8 @@ using ::testing::ThrowsMessage;
 constexpr const char* kName = "2026-11-28T10-00-00Z.mcap.enc";
 constexpr double kNamedBegin = 1795860000.0;  // that date: UTC [s since 1970]
 
+constexpr const char* kEvent = "P07 presses";  // ciphertext of 9 kB holds a given "P07" in one of 2,000
+
 class EncryptedRecordings : public ::testing::Test {
  protected:
   /// Writes a recording of ten events, one a chunk. @param finished  false: it has no end
@@ -45,7 +47,7 @@ class EncryptedRecordings : public ::testing::Test {
     for (std::uint64_t i = 0; i < 10; ++i) {
       wire::Event event;
       event.set_code("marker");
-      event.set_text("P07 presses");
+      event.set_text(kEvent);
       writer.add(static_cast<std::uint16_t>(Topic::kEvent), (100 + i) * 1'000'000'000,
                  event.SerializeAsString());
       writer.write_chunk();
@@ -97,7 +99,7 @@ TEST_F(EncryptedRecordings, AreReadWithTheirKeysAndRefusedWithout) {
   const fs::path file = written(kName);
   const RecordingContent content = read_recording(file, {}, test_keys());
   ASSERT_THAT(content.events, SizeIs(10));
-  EXPECT_EQ(content.events[9].text, "P07 presses");
+  EXPECT_EQ(content.events[9].text, kEvent);
   const auto refused = ThrowsMessage<std::runtime_error>(
       AllOf(HasSubstr(kName), HasSubstr("its key (id"), Not(HasSubstr("repair"))));
   EXPECT_THAT([&] { static_cast<void>(read_recording(file)); }, refused);
@@ -105,7 +107,7 @@ TEST_F(EncryptedRecordings, AreReadWithTheirKeysAndRefusedWithout) {
   EXPECT_THAT([&] { static_cast<void>(replay(file)); }, refused);
   EXPECT_THAT([&] { static_cast<void>(replay(file, {}, nullptr, test_keys())); },
               ThrowsMessage<std::runtime_error>(HasSubstr("it holds no station")));
-  EXPECT_THAT(testing::read_file(file), Not(HasSubstr("P07")));
+  EXPECT_THAT(testing::read_file(file), Not(HasSubstr(kEvent)));
 }
 
 TEST_F(EncryptedRecordings, ADamagedFrameIsNamedByItsPlaceWhenItIsRead) {
@@ -134,7 +136,7 @@ TEST_F(EncryptedRecordings, ARepairWithTheKeyMakesAWholeEncryptedFile) {
   EXPECT_EQ(whole.events, 9U);
   EXPECT_EQ(whole.key_id, test_encryption().id);
   EXPECT_FALSE(repair_recording(file, test_keys()).changed);
-  EXPECT_THAT(testing::read_file(file), Not(HasSubstr("P07")));
+  EXPECT_THAT(testing::read_file(file), Not(HasSubstr(kEvent)));
 }
 
 TEST_F(EncryptedRecordings, ARepairWithoutTheKeyKeepsWholeFramesAndTheKeyCompletesIt) {
