@@ -92,13 +92,14 @@ enum {
   PHALANX_STATUS_SAMPLE_OUT_OF_RANGE = 1 << 1,  ///< an angle was outside the range of motion; it was clamped
   PHALANX_STATUS_SAMPLE_JUMP = 1 << 2,          ///< an angle was faster than limits.joint_speed
   PHALANX_STATUS_TIME_NOT_INCREASING = 1 << 3,  ///< the time did not increase; the angles were not used
-  PHALANX_STATUS_START_INSIDE = 1 << 4,         ///< a digit started inside an object and has no force
-  PHALANX_STATUS_SLID = 1 << 5,                 ///< a contact's offset exceeds contact.slid_mm
-  PHALANX_STATUS_SEARCH_EXHAUSTED = 1 << 6,     ///< the contact search stopped a digit early
-  PHALANX_STATUS_FORCE_LIMITED = 1 << 7,        ///< the fingertip cap changed the force
-  PHALANX_STATUS_TORQUE_LIMITED = 1 << 8,       ///< the joint torque limit acted
-  PHALANX_STATUS_TORQUE_RATE_LIMITED = 1 << 9,  ///< the torque-rate limit acted
-  PHALANX_STATUS_COMMAND_NOT_FINITE = 1 << 10,  ///< a torque was not finite; it was set to zero
+  /// A digit started inside an object. It has no force, unless its opening is confirmed.
+  PHALANX_STATUS_START_INSIDE = 1 << 4,
+  PHALANX_STATUS_SLID = 1 << 5,                   ///< a contact's offset exceeds contact.slid_mm
+  PHALANX_STATUS_SEARCH_EXHAUSTED = 1 << 6,       ///< the contact search stopped a digit early
+  PHALANX_STATUS_FORCE_LIMITED = 1 << 7,          ///< the fingertip cap changed the force
+  PHALANX_STATUS_TORQUE_LIMITED = 1 << 8,         ///< the joint torque limit acted
+  PHALANX_STATUS_TORQUE_RATE_LIMITED = 1 << 9,    ///< the torque-rate limit acted
+  PHALANX_STATUS_COMMAND_NOT_FINITE = 1 << 10,    ///< a torque was not finite; it was set to zero
   PHALANX_STATUS_TRAJECTORY_EXHAUSTED = 1 << 11,  ///< gdp.method = "trajectory" found no free pose
   PHALANX_STATUS_SAMPLE_STALE = 1 << 12,          ///< no sample was wholly good for 50 ms
   PHALANX_STATUS_OSCILLATING = 1 << 13            ///< the force of a segment oscillates
@@ -420,8 +421,8 @@ typedef struct phalanx_trial {
   uint32_t struct_size;
   uint32_t reserved;
   uint64_t seed;
-  double stiffness;  ///< of the wall [N/m]; NaN: the scene's
-  double press;      ///< intended force of each digit [N]; NaN: the patient's
+  double stiffness;  ///< of the wall, > 0, <= 1e5 [N/m]; NaN: the scene's. 0 is refused
+  double press;      ///< intended force of each digit, 0 .. 1000 [N]; NaN: the patient's
 } phalanx_trial;
 
 /// Result of a trial. Smallest size: all of it.
@@ -441,6 +442,8 @@ typedef struct phalanx_trial_result {
 } phalanx_trial_result;
 
 /// Runs one trial. Equal arguments give equal bits. It takes seconds. Not real-time.
+/// @returns PHALANX_ERROR_REFUSED if a number of `trial` is out of its range, no digit meets the object, or the
+/// scene, its device or its patient cannot be used
 PHALANX_API phalanx_result phalanx_trial_run(const phalanx_scene* scene, const phalanx_trial* trial,
                                              phalanx_trial_result* result);
 
@@ -459,11 +462,13 @@ PHALANX_API phalanx_result phalanx_recorder_create(phalanx_state* state, const c
 
 /// Adds the last step of the state. Call it after each phalanx_step(), on the same thread; the file states
 /// which steps are missing otherwise. About every 0.2 s it waits for the disk. Not real-time.
-/// @returns PHALANX_ERROR_NOT_NOW if there is no new step; PHALANX_ERROR_FAILED if the disk refuses
+/// @returns PHALANX_ERROR_NOT_NOW if there is no new step, or after phalanx_recorder_finish();
+/// PHALANX_ERROR_FAILED if the disk refuses: the step is kept then, and written with the next one
 PHALANX_API phalanx_result phalanx_recorder_add(phalanx_recorder* recorder);
 
 /// Adds something that happened, at the time of the last step. Not real-time.
 /// @param code  one word;  @param text  at most 4,000 bytes are kept
+/// @returns PHALANX_ERROR_NOT_NOW after phalanx_recorder_finish()
 PHALANX_API phalanx_result phalanx_recorder_event(phalanx_recorder* recorder, const char* code,
                                                   const char* text);
 

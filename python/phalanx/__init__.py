@@ -56,12 +56,18 @@ class Status(_enum.IntFlag):
 
 
 def joint(name: str) -> int:
-    """Returns the number of a joint, for the columns with 20 values: joint("index_mcp_flexion")."""
+    """Returns the number of a joint, for the columns with 20 values: joint("index_mcp_flexion").
+
+    Raises ValueError for an unknown name.
+    """
     return _index(name, JOINTS, "joint")
 
 
 def segment(name: str) -> int:
-    """Returns the number of a segment, for the columns with 16 values: segment("index-finger-tip")."""
+    """Returns the number of a segment, for the columns with 16 values: segment("index-finger-phalanx-distal").
+
+    Raises ValueError for an unknown name.
+    """
     return _index(name, SEGMENTS, "segment")
 
 

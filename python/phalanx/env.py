@@ -64,8 +64,9 @@ class HandEnv:
     order: the measured angles of the moved joints [rad], their shown angles [rad], their torques [Nm], the
     force on each of their digits [N], and the target force of all digits together [N].
 
-    The reward of a step is -|force - target| / target - 0.01 mean(action^2). An episode terminates when the
-    force has been within `tolerance` of the target for `hold_s`. It is truncated after `seconds`.
+    The reward of a step is -|force - target| / target - 0.01 mean(action^2), where force is the sum of the
+    magnitudes on all 16 segments [N], also on those that are not in the observation. An episode terminates when
+    this force has been within `tolerance` of the target for `hold_s`. It is truncated after `seconds`.
 
     scene: Scene, or what Scene() takes.
     digits: names of the digits that move.
@@ -75,6 +76,8 @@ class HandEnv:
     seconds: longest episode [s].
     action_hz: actions a second; the step runs at the scene's rate meanwhile [Hz].
     speed_rad_per_s: largest speed of a joint [rad/s].
+
+    Raises ValueError for an argument out of range, SceneError for a scene that cannot be used.
     """
 
     metadata: dict[str, Any] = {"render_modes": []}
@@ -143,6 +146,8 @@ class HandEnv:
 
         seed: of the targets of this and later episodes; None: they continue.
         options: {"target_n": force} states the target instead of drawing it.
+
+        Raises ValueError if that target is outside the environment's target_n.
         """
         if seed is not None:
             self._generator = np.random.default_rng(seed)
@@ -167,6 +172,9 @@ class HandEnv:
 
         action: speed of each moved joint, -1 to 1; larger values are clipped.
         Returns observation, reward, terminated, truncated and info, as gymnasium.
+
+        Raises RuntimeError before reset() and after the end of an episode, TypeError or ValueError for an action of
+        another type or shape, or with a number that is not finite.
         """
         if not self._ready:
             raise RuntimeError("step: the episode has ended, or none has begun; call reset() first")

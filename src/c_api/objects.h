@@ -109,6 +109,7 @@ struct Recorder {
   State& state;
   StepRecorder file;
   std::uint64_t tick = 0;  ///< of the newest step in the file
+  bool finished = false;   ///< the file has its end
 };
 
 }  // namespace phalanx::c_api

@@ -32,6 +32,8 @@ std::unique_ptr<Recorder> begin_recorder(State& state, const char* path) {
   return recorder;
 }
 
+phalanx_result already_finished() { return failed(PHALANX_ERROR_NOT_NOW, "the recording is finished"); }
+
 /// Writes the changes up to that of the last step.
 void record_changes(Recorder& recorder) {
   State& state = recorder.state;
@@ -66,6 +68,7 @@ phalanx_result phalanx_recorder_create(phalanx_state* state, const char* path, p
 phalanx_result phalanx_recorder_add(phalanx_recorder* recorder) {
   auto* const object = object_of<Recorder>(recorder);
   if (object == nullptr) return wrong_handle("recorder");
+  if (object->finished) return already_finished();
   const State& state = object->state;
   const phalanx::Snapshot& snapshot = state.haptic.snapshot();
   if (snapshot.tick == object->tick)
@@ -88,6 +91,7 @@ phalanx_result phalanx_recorder_event(phalanx_recorder* recorder, const char* co
   if (object == nullptr) return wrong_handle("recorder");
   if (code == nullptr) return null_argument("code");
   if (text == nullptr) return null_argument("text");
+  if (object->finished) return already_finished();
   return guarded([&] {
     object->file.event(code, "", text);
     return PHALANX_OK;
@@ -105,6 +109,7 @@ phalanx_result phalanx_recorder_finish(phalanx_recorder* recorder) {
       state.unrecorded.clear();
     }
     object->file.finish();
+    object->finished = true;
     return PHALANX_OK;
   });
 }

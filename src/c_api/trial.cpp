@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "c_api/objects.h"
@@ -21,6 +22,15 @@ void copy_short(const std::string& from, char (&into)[N]) noexcept {
   into[size] = '\0';
 }
 
+/// @returns what is wrong with the numbers of a trial; null: nothing
+const char* wrong_number(const phalanx_trial& trial) noexcept {
+  if (!std::isnan(trial.stiffness) && !(trial.stiffness > 0.0 && trial.stiffness <= 1e5))
+    return "stiffness: must be > 0, <= 1e5 N/m; NaN takes the scene's";
+  if (!std::isnan(trial.press) && !(trial.press >= 0.0 && trial.press <= 1000.0))
+    return "press: must be 0 .. 1000 N; NaN takes the patient's";
+  return nullptr;
+}
+
 }  // namespace
 
 phalanx_result phalanx_trial_run(const phalanx_scene* scene, const phalanx_trial* trial,
@@ -35,6 +45,7 @@ phalanx_result phalanx_trial_run(const phalanx_scene* scene, const phalanx_trial
   const phalanx_result size =
       check_size(result->struct_size, sizeof full, sizeof full, "phalanx_trial_result");
   if (size != PHALANX_OK) return size;
+  if (const char* const why = wrong_number(with)) return failed(PHALANX_ERROR_REFUSED, why);
   return guarded([&] {
     const auto setup = phalanx::make_trial_setup(object->read.scene);
     const phalanx::TrialResult ran = phalanx::run_trial(*setup, with.stiffness, with.press, with.seed);

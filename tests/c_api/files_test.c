@@ -23,6 +23,17 @@ static void trial(void) {
   CHECK(memcmp(&first, &second, sizeof first) == 0 && first.valid == 1 && first.stable == 1);
   CHECK(first.mean_force > 0.1 && first.why_invalid[0] == '\0');
   CHECK(third.force_swing > first.force_swing && third.peak_depth < first.peak_depth);
+
+  const double stiffnesses[] = {0.0, -1.0, 1.1e5, kEndless};
+  for (size_t i = 0; i < sizeof stiffnesses / sizeof stiffnesses[0]; ++i) {
+    const phalanx_trial wrong = {.struct_size = sizeof wrong, .stiffness = stiffnesses[i], .press = kNan};
+    FAILS(PHALANX_ERROR_REFUSED, "stiffness: must be > 0", phalanx_trial_run(scene, &wrong, &third));
+  }
+  const double presses[] = {-1.0, 1001.0, kEndless};
+  for (size_t i = 0; i < sizeof presses / sizeof presses[0]; ++i) {
+    const phalanx_trial wrong = {.struct_size = sizeof wrong, .stiffness = kNan, .press = presses[i]};
+    FAILS(PHALANX_ERROR_REFUSED, "press: must be 0 .. 1000", phalanx_trial_run(scene, &wrong, &third));
+  }
   GOOD(phalanx_scene_destroy(scene));
 }
 
@@ -93,7 +104,9 @@ static void recordings(const char* folder) {
   }
   CHECK(torque < -0.01);
   GOOD(phalanx_recorder_finish(recorder));
-  FAILS(PHALANX_ERROR_FAILED, "finished", phalanx_recorder_event(recorder, "late", ""));
+  FAILS(PHALANX_ERROR_NOT_NOW, "finished", phalanx_recorder_event(recorder, "late", ""));
+  GOOD(phalanx_step(state, &sample, NULL));
+  FAILS(PHALANX_ERROR_NOT_NOW, "finished", phalanx_recorder_add(recorder));
   GOOD(phalanx_recorder_destroy(recorder));
   FAILS(PHALANX_ERROR_NOT_NOW, "first one", phalanx_recorder_create(state, path, &recorder));
   GOOD(phalanx_state_destroy(state));

@@ -16,18 +16,20 @@ class Latest {
   Latest() = default;
   explicit Latest(const T& first) : place_{first, first, first} {}
 
+  /// Publishes a value. It takes the place of one that was not read. For the writing thread.
   void write(const T& value) noexcept {
     place_[mine_] = value;
     mine_ = between_.exchange(static_cast<std::uint8_t>(mine_ | kNew), std::memory_order_acq_rel) & kIndex;
   }
 
-  /// Takes the newest value, if one has come since the last call. @returns true if so
+  /// Takes the newest value, if one has come since the last call. For the reading thread. @returns true if so
   bool update() noexcept {
     if ((between_.load(std::memory_order_acquire) & kNew) == 0) return false;
     theirs_ = between_.exchange(theirs_, std::memory_order_acq_rel) & kIndex;
     return true;
   }
-  /// @returns the value that the last update() took; T's first value before that.
+  /// @returns the value that the last update() took; T's first value before that. It is valid and constant until
+  /// the next update(). For the reading thread.
   [[nodiscard]] const T& value() const noexcept { return place_[theirs_]; }
 
  private:

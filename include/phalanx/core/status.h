@@ -17,7 +17,8 @@ enum class Status : std::uint32_t {
   kSampleJump = 1U << 2,  ///< an angle moved faster than limits.joint_speed; it was slewed at that speed
   /// The sample's time did not increase or was not finite. Its angles were not used.
   kTimeNotIncreasing = 1U << 3,
-  /// A digit started inside or behind the object. It gives no force until it has been clear once.
+  /// A digit started inside or behind the object, and has not been clear since. It gives no force, unless a person
+  /// has confirmed its opening (force/opening.h).
   kStartInside = 1U << 4,
   /// A contact's tangential offset exceeds contact.slid_mm: static grasping no longer holds.
   kSlid = 1U << 5,

@@ -65,6 +65,7 @@ class ChannelMap {
   /// @returns the channels as given.
   [[nodiscard]] const std::vector<DeviceChannel>& channels() const noexcept { return channels_; }
   /// @returns the value of a channel in its own unit. Real-time.
+  /// @pre channel < channels().size()
   [[nodiscard]] double value(std::size_t channel, std::int32_t raw) const noexcept {
     return channels_[channel].gain * static_cast<double>(raw) + channels_[channel].offset;
   }
@@ -75,7 +76,8 @@ class ChannelMap {
   /// a splay. Completed: a curl, which sets several joints from one sensor, and joints that follow a joint
   /// that is not fixed.
   [[nodiscard]] const AngleOrigins& angle_origins() const noexcept { return angle_origin_; }
-  /// @returns the angle channel of this joint; -1: none.
+  /// @returns the angle channel of this joint; -1: none. Real-time.
+  /// @pre 0 <= joint < kJoints
   [[nodiscard]] int angle_channel(int joint) const noexcept {
     return angle_channel_[static_cast<std::size_t>(joint)];
   }

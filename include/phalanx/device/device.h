@@ -129,6 +129,7 @@ class Device {
   virtual void open() = 0;
   /// Commands zero torque, then releases the device. It may be called at any time, also twice.
   virtual void close() noexcept = 0;
+  /// @returns identity and abilities, known after open() and constant until close().
   [[nodiscard]] virtual const DeviceInfo& info() const = 0;
 
   /// Fetches the samples since the last call, oldest first; none is older than an earlier one.
@@ -143,6 +144,7 @@ class Device {
   /// @returns the fault of the connection itself: kNone, kControllerRestarted, kRefused or kDeviceLost. After
   /// the cause is gone, reset() clears it.
   [[nodiscard]] virtual Fault connection_fault() const noexcept { return Fault::kNone; }
+  /// @returns the counters of the link since open(); zeros for a device without one. Real-time.
   [[nodiscard]] virtual LinkStatistics statistics() const noexcept { return {}; }
 };
 

@@ -14,6 +14,8 @@ class Stillness {
   /// @param band  largest difference of two values that count as still, in the values' unit
   explicit Stillness(double band) noexcept : band_(band) {}
 
+  /// Adds a value. Real-time.
+  /// @param now  time of the value, not decreasing [s]
   void add(double value, double now) noexcept {
     if (count_ == 0 || std::max(high_, value) - std::min(low_, value) > band_) {
       since_ = now;
@@ -28,6 +30,7 @@ class Stillness {
     newest_ = now;
   }
 
+  /// @returns true if a value has come. Real-time.
   [[nodiscard]] bool heard() const noexcept { return count_ > 0; }
   /// @returns for how long the values have been still, up to the newest one [s].
   [[nodiscard]] double held_for() const noexcept { return heard() ? newest_ - since_ : 0.0; }

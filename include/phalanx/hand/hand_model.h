@@ -67,7 +67,8 @@ class HandModel {
 
   [[nodiscard]] const HandParameters& parameters() const noexcept { return parameters_; }
   [[nodiscard]] Handedness handedness() const noexcept { return handedness_; }
-  /// Returns the mesh of a segment, in its frame S [m].
+  /// Returns the mesh of a segment, in its frame S [m]. Real-time.
+  /// @pre 0 <= segment < kSegments
   [[nodiscard]] const TriangleMesh& mesh(int segment) const noexcept {
     return meshes_[static_cast<std::size_t>(segment)];
   }
@@ -81,13 +82,15 @@ class HandModel {
   /// Computes the forward kinematics of one digit as the product of its D-H transforms, with the coupled
   /// rotations between them.                                                                      S1 sec. II
   /// @param angle  the digit's joint angles, finite [rad]
+  /// @pre 0 <= digit < kDigits
   /// Real-time: O(1), no allocation, lock, throw or I/O.
   void digit_pose(int digit, const DigitAngles& angle, DigitPose& pose) const noexcept;
 
   /// Computes the poses of all five digits. Real-time.
   void poses(const JointArray& angle, HandPoses& poses) const noexcept;
 
-  /// Returns the digit's coupled rotations.
+  /// Returns the digit's coupled rotations. Real-time.
+  /// @pre 0 <= digit < kDigits
   [[nodiscard]] const DigitCoupling& coupling(int digit) const noexcept {
     return parameters_.digits[static_cast<std::size_t>(digit)].coupling;
   }

@@ -63,14 +63,17 @@ inline constexpr int kPronationAxis = 3;
 /// Returns how many of a digit's axes, counted from the palm, move its segment k: 4, 5 or 6.
 [[nodiscard]] constexpr int axes_that_move(int k) noexcept { return k + 4; }
 
-/// Returns the name of a joint in files: "index_mcp_flexion", ...
+/// Returns the name of a joint in files: "index_mcp_flexion", ... Real-time.
+/// @pre 0 <= joint < kJoints
 [[nodiscard]] std::string_view joint_name(int joint) noexcept;
 /// Returns the WebXR hand joint name of the segment's frame: "index-finger-phalanx-proximal", ... The
-/// palm's is "wrist".
+/// palm's is "wrist". Real-time.
+/// @pre 0 <= segment < kSegments
 [[nodiscard]] std::string_view segment_name(int segment) noexcept;
-/// Returns "thumb", "index", "middle", "ring" or "little".
+/// Returns "thumb", "index", "middle", "ring" or "little". Real-time.
+/// @pre 0 <= digit < kDigits
 [[nodiscard]] std::string_view digit_name(int digit) noexcept;
-/// Returns the joint or the segment of this name, if there is one.
+/// Returns the joint or the segment of this name, if there is one. Real-time.
 [[nodiscard]] std::optional<int> find_joint(std::string_view name) noexcept;
 [[nodiscard]] std::optional<int> find_segment(std::string_view name) noexcept;
 

@@ -54,9 +54,11 @@ class StepRecorder {
   /// @param number  from 1 on, rising;  @param values  as StepRecorderSettings::values
   void change(std::uint64_t number, const Overrides& values);
   /// Adds a step. Ticks that were left out are stated in the file.
-  /// @throws std::runtime_error if the disk refuses; the step is kept, and written with the next one
+  /// @throws std::runtime_error if the disk refuses; the step is kept, and written with the next one. Also after
+  /// finish(); nothing is added then
   void add(const OwnStep& step);
   /// Adds something that happened, at the time of the last step. @param who  may be empty
+  /// @throws std::runtime_error after finish()
   void event(const std::string& code, const std::string& who, const std::string& text);
   /// Writes the rest and the file's end, and closes the file. A second call has no effect.
   /// @throws std::runtime_error if the disk refuses; it may be called again then

@@ -42,9 +42,10 @@ class PressIntent {
   static constexpr double kApproach =
       0.02;  ///< distance from start to contact [m]; less if the joints' ranges end before
 
-  /// Draws press, speed and tremor of each digit.
+  /// Draws press, speed and tremor of each digit. Set-up only.
+  /// @param plan, patient  outlive this object, which refers to them
   /// @param wall   stiffness of the wall [N/m] > 0
-  /// @param press  force [N]; the seed's spread is applied to it
+  /// @param press  force [N], finite and >= 0; the seed's spread is applied to it
   PressIntent(const PressPlan& plan, const PatientParameters& patient, const HandParameters& hand,
               double wall, double press, std::uint64_t seed, const TrialSchedule& schedule);
 

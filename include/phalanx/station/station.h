@@ -54,7 +54,9 @@ class Station {
   Station& operator=(const Station&) = delete;
   ~Station();
 
-  /// Starts the loop. Torque comes by itself once the device is ready, over the start ramp.
+  /// Starts the loop. Call it once: a second call ends the program. Torque comes by itself once the device is
+  /// ready, over the start ramp.
+  /// @throws std::system_error if no thread can be made. Not real-time.
   void start();
   /// Ramps to zero, ends the loop and closes the device. Returns when all of that is done.
   void shut_down() noexcept;

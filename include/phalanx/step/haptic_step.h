@@ -72,6 +72,7 @@ class HapticState {
 /// device sample -> hand -> contact -> force -> device command: one tick of the whole hand.      S1 fig. 2
 /// Whatever `sample` holds, the torques in `state.snapshot()` are finite and within the limits; the status
 /// says what happened. Same model, parameters and samples, same bits.
+/// @pre `state` was made with this `model`: it holds numbers of its triangles. Another model needs a new state
 /// @param parameters  in the ranges that HapticState's constructor checks. They may differ from the last
 /// step's, but for rate_hz; what that does to the force in contact is for the caller to judge
 /// Real-time: no allocation, lock, throw or I/O.

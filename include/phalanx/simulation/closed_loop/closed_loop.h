@@ -24,6 +24,7 @@ using Gate = std::function<void(double t, const SimulatedExoskeleton&, Snapshot&
 /// @param host_phase  phase of the host's first step in its period, 0 .. 1: the two clocks are independent
 /// @param observer    called after each step of the host
 /// @param gate        empty: the step's output reaches the device unchanged
+/// @throws std::invalid_argument as HapticState; and what `intention`, the observer and the gate throw
 /// @pre seconds is finite. Equal model, parameters, device and intention give equal bits. Not real-time:
 /// `intention` may allocate.
 void run_closed_loop(

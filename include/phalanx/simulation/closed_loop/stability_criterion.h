@@ -40,9 +40,10 @@ struct TrialResult {
   double ghost_energy = 0.0;    ///< work of this force on the finger [J]
 };
 
-/// Observer of a trial: give every snapshot to add(), then call result().
+/// Observer of a trial: give every snapshot to add(), then call result(). Not real-time.
 class TrialObserver {
  public:
+  /// @param plan  of the trial; it outlives the observer, which refers to it
   TrialObserver(const PressPlan& plan, const TrialSchedule& schedule,
                 const StabilityCriterion& criterion = {});
 
