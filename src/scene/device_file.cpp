@@ -346,6 +346,12 @@ Exoskeleton load_device(const SceneDescription& scene) {
   return read_device(file);
 }
 
+std::vector<std::filesystem::path> device_files(const SceneDescription& scene) {
+  LayeredFile file("device");
+  file.add_file(scene.device.file, ".", scene.device.stated_at);
+  return file.files();
+}
+
 Exoskeleton load_device_file(const std::string& name_or_path, const std::filesystem::path& folder) {
   LayeredFile file("device");
   file.add_file(name_or_path, folder);

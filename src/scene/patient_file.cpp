@@ -80,6 +80,12 @@ PatientParameters load_patient(const SceneDescription& scene) {
   return read_patient(file);
 }
 
+std::vector<std::filesystem::path> patient_files(const SceneDescription& scene) {
+  LayeredFile file("patient");
+  file.add_file(scene.patient.file, ".", scene.patient.stated_at);
+  return file.files();
+}
+
 PatientParameters load_patient_file(const std::string& name_or_path, const std::filesystem::path& folder) {
   LayeredFile file("patient");
   file.add_file(name_or_path, folder);

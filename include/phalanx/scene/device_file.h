@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "phalanx/device/exoskeleton.h"
 #include "phalanx/scene/scene.h"
@@ -16,6 +17,10 @@ namespace phalanx {
 /// such file, broken TOML, an unknown or a missing key, a number out of range, or a refusal of
 /// check_exoskeleton(). Set-up only.
 [[nodiscard]] Exoskeleton load_device(const SceneDescription& scene);
+
+/// @returns the files that the device of a scene is read from: its own and those that they name as `base`. Throws as
+/// load_device().
+[[nodiscard]] std::vector<std::filesystem::path> device_files(const SceneDescription& scene);
 
 /// Loads a device file by name in assets/devices, or by path (contains `/` or ends with .toml), relative to
 /// `folder`. Throws as load_device().

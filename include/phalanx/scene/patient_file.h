@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "phalanx/scene/scene.h"
 #include "phalanx/simulation/patient.h"
@@ -15,6 +16,10 @@ namespace phalanx {
 /// such file, broken TOML, an unknown or a missing key, a number out of range, or a refusal of
 /// check_patient(). Set-up only.
 [[nodiscard]] PatientParameters load_patient(const SceneDescription& scene);
+
+/// @returns the files that the patient of a scene is read from: its own and those that they name as `base`. Throws as
+/// load_patient().
+[[nodiscard]] std::vector<std::filesystem::path> patient_files(const SceneDescription& scene);
 
 /// Loads a patient file by name in assets/patients, or by path (contains `/` or ends with .toml), relative to
 /// `folder`. Throws as load_patient().

@@ -69,6 +69,7 @@ void LayeredFile::add_file(const std::string& name_or_path, const fs::path& fold
                            const std::string& stated_at) {
   const std::string what = stated_at.empty() ? what_ : fmt::format("{}: {}", stated_at, what_);
   const auto file = find_data_file(what, name_or_path, fmt::format("assets/{}s", what_), ".toml", folder);
+  files_.push_back(file);
   add_text(read_text_file(file.string(), what_), file.string(), file.parent_path(), 0);
 }
 
@@ -88,6 +89,7 @@ void LayeredFile::add_text(const std::string& text, const std::string& origin, c
       table.fail("base", "the files name each other as base in a circle; remove one `base`");
     const auto file = find_data_file(layer.places["base"].place.place + ": base: " + what_, base,
                                      fmt::format("assets/{}s", what_), ".toml", folder);
+    files_.push_back(file);
     add_text(read_text_file(file.string(), what_), file.string(), file.parent_path(), depth + 1);
     layer.tree.erase("base");
   }

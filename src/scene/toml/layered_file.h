@@ -40,6 +40,8 @@ class LayeredFile {
   [[nodiscard]] std::vector<TomlTable> scales() const;
   /// @returns the file that was merged last.
   [[nodiscard]] const std::string& origin() const noexcept { return origin_; }
+  /// @returns the files that were merged, without text from add_text().
+  [[nodiscard]] const std::vector<std::filesystem::path>& files() const noexcept { return files_; }
   /// Names the file and every override of the scene, for messages about the whole.
   [[nodiscard]] std::string in_words() const;
 
@@ -65,6 +67,7 @@ class LayeredFile {
   std::string what_;
   std::string origin_;
   std::string overlay_in_words_;
+  std::vector<std::filesystem::path> files_;
   Layer merged_;
   std::vector<std::unique_ptr<Layer>> scale_layers_;  ///< only their tree's `scale`
 };

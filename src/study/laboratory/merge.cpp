@@ -38,10 +38,13 @@ std::vector<fs::path> journals_of(const std::vector<fs::path>& folders, const fs
   return files;
 }
 
-/// Writes numbers as ranges: "3, 7-9, 12".
+/// Writes numbers as ranges: "3, 7-9, 12". After 20 ranges it states how many numbers are left.
 std::string ranges(const std::vector<int>& numbers) {
+  constexpr int kMost = 20;
   std::string text;
-  for (std::size_t i = 0; i < numbers.size();) {
+  int written = 0;
+  for (std::size_t i = 0; i < numbers.size(); ++written) {
+    if (written == kMost) return fmt::format("{} and {} more", text, numbers.size() - i);
     std::size_t last = i;
     while (last + 1 < numbers.size() && numbers[last + 1] == numbers[last] + 1) ++last;
     text += fmt::format("{}{}", text.empty() ? "" : ", ", numbers[i]);

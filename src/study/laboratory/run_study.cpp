@@ -10,21 +10,16 @@
 #include <atomic>
 #include <charconv>
 #include <chrono>
-#include <exception>
-#include <functional>
-#include <limits>
 #include <map>
 #include <mutex>
 #include <set>
 #include <stdexcept>
-#include <system_error>
-#include <thread>
 
 #include "phalanx/core/error_text.h"
 #include "phalanx/record/made.h"
 #include "phalanx/record/output_file.h"
-#include "phalanx/scene/scene.h"
 #include "phalanx/study/laboratory/outputs.h"
+#include "study/laboratory/checked_inputs.h"
 #include "study/laboratory/fingerprint.h"
 #include "study/laboratory/journal.h"
 #include "study/laboratory/measure_point.h"
@@ -36,14 +31,16 @@ namespace {
 /// The finished points, and the progress callback. For one thread at a time.
 class Progress {
  public:
-  Progress(const StudyOptions& options, int total, const std::vector<PointResult>& resumed)
-      : options_(options), total_(total), resumed_(static_cast<int>(resumed.size())) {
+  Progress(const StudyOptions& options, const InputFiles& files, int total,
+           const std::vector<PointResult>& resumed)
+      : options_(options), files_(files), total_(total), resumed_(static_cast<int>(resumed.size())) {
     for (const PointResult& result : resumed) results_.emplace(result.index, result);
     tell();
   }
 
   void finish(Journal& journal, const PointResult& result) {
     const std::lock_guard<std::mutex> guard(mutex_);
+    files_.refuse_changed();
     journal.append(result);
     // As a later run would read it: the result must not depend on the run that measured it.
     results_.emplace(result.index, result_from_json(result_to_json(result)));
@@ -67,6 +64,7 @@ class Progress {
   }
 
   const StudyOptions& options_;
+  const InputFiles& files_;
   int total_;
   int resumed_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
@@ -129,52 +127,6 @@ void measure_points(const std::vector<int>& points, const Study& study, const Tr
   });
 }
 
-/// Exception of the smallest index that threw.
-class FirstException {
- public:
-  [[nodiscard]] bool is_before(int index) const { return index_ < index; }
-  void add_current(int index) {
-    const std::lock_guard<std::mutex> guard(mutex_);
-    if (index >= index_) return;
-    index_ = index;
-    exception_ = std::current_exception();
-  }
-  void rethrow_if_any() const {
-    if (exception_) std::rethrow_exception(exception_);
-  }
-
- private:
-  std::mutex mutex_;
-  std::atomic<int> index_ = std::numeric_limits<int>::max();
-  std::exception_ptr exception_;
-};
-
-/// Calls `function` with 0 .. count - 1 on several threads, which have ended when it returns, so that a process may
-/// fork after it. @throws as `function` with the smallest index for which it throws
-void for_each_on_threads(int count, int threads, const std::function<void(int)>& function) {
-  std::atomic<int> next{0};
-  FirstException first;
-  const auto work = [&] {
-    for (int i; (i = next++) < count && !first.is_before(i);) {
-      try {
-        function(i);
-      } catch (...) {
-        first.add_current(i);
-      }
-    }
-  };
-  {
-    std::vector<std::jthread> others;
-    try {
-      for (int i = 1; i < std::min(threads, count); ++i) others.emplace_back(work);
-    } catch (
-        const std::system_error&) {  // the system has no further thread: those that there are do the work
-    }
-    work();
-  }
-  first.rethrow_if_any();
-}
-
 void refuse_points_of_others(const Journal& journal, const Shard& shard) {
   for (const PointResult& result : journal.finished()) {
     if (result.index % shard.count == shard.index - 1) continue;
@@ -207,44 +159,17 @@ std::string program_version() {
   return fmt::format("{} {}", commit, fingerprint_of_files({"/proc/self/exe"}));
 }
 
-std::string check_study(const Study& study, const StudyCheck& check, int jobs) {
-  constexpr int kTogether = 4096;  // points whose inputs are in memory
-  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  const int threads = jobs > 0 ? std::min(jobs, cores) : cores;
-  const int points = point_count(study);
-  Fingerprint texts;
-  std::set<std::filesystem::path> files;
-  std::vector<StudyInputs> inputs;
-  for (int begin = 0; begin < points; begin += kTogether) {
-    inputs.assign(static_cast<std::size_t>(std::min(kTogether, points - begin)), {});
-    for_each_on_threads(static_cast<int>(inputs.size()), threads, [&](int i) {
-      const StudyPoint point = study_point(study, begin + i);
-      try {
-        inputs[static_cast<std::size_t>(i)] = check(point_overrides(study, point));
-      } catch (const std::invalid_argument& error) {
-        throw SceneError(fmt::format("study {}, point {} ({}): {}", study.name, begin + i,
-                                     point_text(study, point), error.what()));
-      }
-    });
-    for (StudyInputs& input : inputs) {
-      texts.add(input.text);
-      for (auto& file : input.files) files.insert(std::move(file));
-    }
-  }
-  return texts.text() + fingerprint_of_files({files.begin(), files.end()});
-}
-
 std::vector<PointResult> run_study(const Study& study, const StudyCheck& check, const TrialFunction& trial,
                                    const std::filesystem::path& out, const StudyOptions& options) {
-  const JournalHeader header{
-      .study = study, .inputs = check_study(study, check, options.jobs), .commit = options.commit};
+  const CheckedInputs inputs = check_inputs(study, check, options.jobs);
+  const JournalHeader header{.study = study, .inputs = inputs.fingerprint, .commit = options.commit};
   prepare_output_folder(out);
   Journal journal(out / journal_name(options.shard.index, options.shard.count), header, options.restart);
   refuse_points_of_others(journal, options.shard);
   const std::vector<int> all = points_of(study, options.shard);
   const std::vector<int> left = without(all, journal.finished());
   if (options.shard.count == 1 && !left.empty()) remove_study_outputs(out);
-  Progress progress(options, static_cast<int>(all.size()), journal.finished());
+  Progress progress(options, inputs.files, static_cast<int>(all.size()), journal.finished());
   Failures failures;
   const int jobs = options.jobs > 0 ? options.jobs : tbb::this_task_arena::max_concurrency();
   tbb::task_arena arena(jobs);

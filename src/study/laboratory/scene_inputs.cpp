@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include "phalanx/scene/data_paths.h"
 #include "phalanx/scene/device_file.h"
@@ -48,6 +49,8 @@ StudyCheck scene_check(const Study& study) {
     const SceneDescription scene = SceneFile(name).scene(overrides);
     StudyInputs inputs;
     inputs.text = device_text(scene) + patient_text(scene);
+    inputs.read = device_files(scene);
+    for (auto& file : patient_files(scene)) inputs.read.push_back(std::move(file));
     inputs.files.push_back(find_data_file("scene", name, "scenes", ".toml", fs::current_path()));
     add_hand(scene.hand, inputs.files);
     add_motion(scene.motion, inputs.files);

@@ -10,12 +10,10 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <optional>
 #include <stdexcept>
 #include <string_view>
 #include <thread>
 #include <type_traits>
-#include <utility>
 
 #include "phalanx/record/made.h"
 #include "study/laboratory/fingerprint.h"
@@ -74,16 +72,25 @@ constexpr const char* kTake = R"(WITH next AS MATERIALIZED (
   FROM next WHERE points.study = :study AND points.point = next.point
   RETURNING points.point)";
 
-// @returns points that had another result, and where it was measured.
+// Stores only if the study still has this machine's libm: another worker may have set its own while this one was cut
+// off. The key's lock waits for claim_libm(), but not for another kFinish.
+// @returns one row: whether the study is there, whether it has this libm, and a point that had another result, with
+// where that was measured; -1: none.
 constexpr const char* kFinish = R"(WITH sent AS MATERIALIZED (
     SELECT * FROM json_to_recordset(CAST(:sent AS json)) AS row (point integer, seconds double precision, result text)),
+  bound AS MATERIALIZED (SELECT id FROM phalanx.studies WHERE id = :study AND libm = :libm FOR KEY SHARE),
   stored AS (
     UPDATE phalanx.points SET result = sent.result, seconds = sent.seconds, worker = :worker, lease_end = NULL,
       finished_at = clock_timestamp()
-    FROM sent WHERE points.study = :study AND points.point = sent.point AND points.result IS NULL)
-  SELECT points.point, coalesce(workers.place, 'a journal')
-  FROM sent, phalanx.points LEFT JOIN phalanx.workers ON workers.id = points.worker
-  WHERE points.study = :study AND points.point = sent.point AND points.result <> sent.result)";
+    FROM sent, bound WHERE points.study = bound.id AND points.point = sent.point AND points.result IS NULL),
+  other AS (
+    SELECT points.point, coalesce(workers.place, 'a journal') AS place
+    FROM sent, phalanx.points LEFT JOIN phalanx.workers ON workers.id = points.worker
+    WHERE points.study = :study AND points.point = sent.point AND points.result <> sent.result
+    ORDER BY points.point LIMIT 1)
+  SELECT CAST((SELECT count(*) FROM phalanx.studies WHERE id = :study) AS integer),
+    CAST((SELECT count(*) FROM bound) AS integer),
+    coalesce((SELECT point FROM other), -1), coalesce((SELECT place FROM other), ''))";
 
 // ORDER BY names the columns, not the text, so that the index points_finished has the order.
 constexpr const char* kCollect =
@@ -133,6 +140,15 @@ std::string remedy_of(const std::string& why) {
 
 std::string libm_here() { return fmt::format("{:016x}", libm_fingerprint()); }
 
+/// @throws std::invalid_argument
+[[noreturn]] void refuse_libm() {
+  throw std::invalid_argument(
+      "this machine's sine, exponential or another mathematical function rounds differently from that of "
+      "the machines that measured points of the study, so that results would differ; work on machines with "
+      "the same processor type and the same libm, or measure all again on this type (phalanx study run "
+      "--restart)");
+}
+
 std::string host_here() {
   std::array<char, 256> host{};
   ::gethostname(host.data(), host.size() - 1);
@@ -141,6 +157,16 @@ std::string host_here() {
 
 std::string header_text_of(const JournalHeader& header) {
   return journal_text({.header = header, .points = {}});
+}
+
+/// @returns how the header that the queue has differs from this one.
+std::string difference_of(const std::string& queued, const JournalHeader& header) {
+  std::string why;
+  try {
+    why = difference(parse_journal(queued, "the queue").header, header);
+  } catch (const std::invalid_argument&) {  // of a version with other keys
+  }
+  return why.empty() ? "it was begun by another version of the program" : why;
 }
 
 /// @param studies  number of rows that the study has
@@ -243,11 +269,13 @@ void StudyQueue::tell_back(const std::string& told) const {
   if (!told.empty() && server_.tell) server_.tell("the queue's server is back");
 }
 
+void StudyQueue::try_though_stopped() { tries_until_ = Clock::now() + std::chrono::seconds(3); }
+
 void StudyQueue::wait_for_server(int tries) const {
   constexpr int kMostDoublings = 5;
   constexpr auto kStep = std::chrono::milliseconds(100);
   for (int step = 0; step < 1 << std::min(tries, kMostDoublings); ++step) {
-    if (tries >= least_tries_ && server_.stopped && server_.stopped()) throw QueueStopped{};
+    if (Clock::now() >= tries_until_ && server_.stopped && server_.stopped()) throw QueueStopped{};
     std::this_thread::sleep_for(kStep);
   }
 }
@@ -338,14 +366,10 @@ void StudyQueue::claim_libm(Session& session) {
   session.sql << R"(SELECT CAST(
         EXISTS (SELECT 1 FROM phalanx.points WHERE study = :study AND result IS NOT NULL) OR
         EXISTS (SELECT 1 FROM phalanx.workers WHERE study = :study AND ended IS NULL
-                AND seen + make_interval(secs => CAST(:lease AS double precision)) > clock_timestamp()) AS integer))",
+                AND greatest(seen, pg_postmaster_start_time())
+                  + make_interval(secs => CAST(:lease AS double precision)) > clock_timestamp()) AS integer))",
       soci::into(bound), soci::use(study_, "study"), soci::use(lease_s_, "lease");
-  if (bound != 0)
-    throw std::invalid_argument(
-        "this machine's sine, exponential or another mathematical function rounds differently from that of "
-        "the machines that measured points of the study, so that results would differ; work on machines with "
-        "the same processor type and the same libm, or measure all again on this type (phalanx study run "
-        "--restart)");
+  if (bound != 0) refuse_libm();
   session.sql << "UPDATE phalanx.studies SET libm = :here WHERE id = :study", soci::use(here, "here"),
       soci::use(study_, "study");
 }
@@ -375,7 +399,7 @@ void StudyQueue::join(const JournalHeader& header, int jobs) {
   });
   if (study_ == 0) {
     std::string why = "it has no study of this name";
-    if (!other.empty()) why = difference(parse_journal(other, "the queue").header, header);
+    if (!other.empty()) why = difference_of(other, header);
     throw std::invalid_argument(fmt::format(
         "the queue does not have this study: {}; begin it with this program and file: phalanx study run "
         "FILE --queue URL --out DIR",
@@ -432,19 +456,23 @@ void StudyQueue::finish(const std::vector<MeasuredPoint>& measured) {
   for (const MeasuredPoint& point : measured)
     json.push_back({{"point", point.index}, {"seconds", point.seconds}, {"result", point.result}});
   const std::string sent = json.dump(-1, ' ', true, OrderedJson::error_handler_t::replace);
-  using Other = std::pair<int, std::string>;
-  const auto other = attempt([&](Session& session) -> std::optional<Other> {
-    const soci::rowset<soci::row> rows = (session.sql.prepare << kFinish, soci::use(sent, "sent"),
-                                          soci::use(worker_, "worker"), soci::use(study_, "study"));
-    const auto first = rows.begin();
-    if (first == rows.end()) return std::nullopt;
-    return Other(first->get<int>(0), first->get<std::string>(1));
+  const std::string libm = libm_here();
+  int studies = 0;
+  int bound = 0;
+  int other = -1;
+  std::string place;
+  attempt([&](Session& session) {
+    session.sql << kFinish, soci::into(studies), soci::into(bound), soci::into(other), soci::into(place),
+        soci::use(sent, "sent"), soci::use(study_, "study"), soci::use(libm, "libm"),
+        soci::use(worker_, "worker");
   });
-  if (other)
+  refuse_removed(studies);
+  if (bound == 0) refuse_libm();
+  if (other >= 0)
     throw std::runtime_error(fmt::format(
         "point {} has another result in the queue already: this machine ({}) and that of the first "
         "result ({}) compute differently; compare them with phalanx study FILE on each",
-        other->first, worker_place_, other->second));
+        other, worker_place_, place));
 }
 
 void StudyQueue::fail(int point, const std::string& log) {
@@ -498,7 +526,8 @@ QueueState StudyQueue::state() {
     session.sql << R"(SELECT (SELECT count(*) FROM phalanx.studies WHERE id = :study),
                         count(*) FILTER (WHERE failures < :most), count(*) FILTER (WHERE failures >= :most),
                         (SELECT count(*) FROM phalanx.workers WHERE study = :study AND ended IS NULL
-                         AND seen + make_interval(secs => CAST(:lease AS double precision)) > clock_timestamp())
+                         AND greatest(seen, pg_postmaster_start_time())
+                           + make_interval(secs => CAST(:lease AS double precision)) > clock_timestamp())
                       FROM phalanx.points WHERE study = :study AND result IS NULL)",
         soci::into(studies), soci::into(state.unfinished), soci::into(state.quarantined),
         soci::into(state.workers), soci::use(kFailuresToQuarantine, "most"), soci::use(study_, "study"),

@@ -2,6 +2,7 @@
 // The tables of the queue. All SQL is here.
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <map>
 #include <memory>
@@ -59,7 +60,9 @@ class StudyQueue {
   /// Renews the leases of these points of this worker.
   void renew(const std::vector<int>& points);
   /// Stores results; a point that has one keeps it.
-  /// @throws std::runtime_error if that one differs. Two that are stored at the same moment are not compared.
+  /// @throws std::runtime_error if that one differs (two that are stored at the same moment are not compared), or if
+  /// the study was removed; std::invalid_argument if its points are by now measured with mathematical functions that
+  /// round differently from this machine's
   void finish(const std::vector<MeasuredPoint>& measured);
   /// Counts a failure of a point of this worker, adds the machine and `log` to the point's log, and gives the point
   /// back.
@@ -78,8 +81,8 @@ class StudyQueue {
   [[nodiscard]] QueueState state();
   /// @returns the first kMostQuarantinedLogs.
   [[nodiscard]] std::vector<QuarantinedPoint> quarantined();
-  /// Lets later calls try for about 3 s, also if `stopped`.
-  void try_though_stopped() noexcept { least_tries_ = 5; }
+  /// Lets calls try for 3 s from now, also if `stopped`. An attempt to connect that has begun may take 10 s more.
+  void try_though_stopped();
   /// Adds the results that were stored since the last call, and some of those before, to `results`.
   void collect(std::map<int, PointResult>& results);
   /// Makes the next collect() begin from the first result.
@@ -103,7 +106,7 @@ class StudyQueue {
   long long study_ = 0;
   long long worker_ = 0;
   double lease_s_ = 0.0;
-  int least_tries_ = 0;
+  std::chrono::steady_clock::time_point tries_until_{};  ///< until then `stopped` has no effect
   std::string collected_until_ = "-infinity";
 };
 

@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <deque>
 #include <exception>
 #include <memory>
@@ -18,6 +19,7 @@
 
 #include "phalanx/study/laboratory/study_file.h"
 #include "phalanx/study/queue.h"
+#include "study/laboratory/checked_inputs.h"
 #include "study/queue/pace.h"
 #include "study/queue/point_process.h"
 #include "study/queue/study_queue.h"
@@ -55,10 +57,11 @@ class PointTime {
 /// A worker: its processes, and the points that it has taken.
 class Worker {
  public:
-  Worker(StudyQueue& queue, const Study& study, const TrialFunction& trial, const QueueServer& server,
-         const QueueWorkOptions& options, int jobs)
+  Worker(StudyQueue& queue, const Study& study, const InputFiles& files, const TrialFunction& trial,
+         const QueueServer& server, const QueueWorkOptions& options, int jobs)
       : queue_(queue),
         study_(study),
+        files_(files),
         trial_(trial),
         server_(server),
         options_(options),
@@ -173,8 +176,9 @@ class Worker {
       if (!process) continue;
       std::vector<PointAnswer> answers = process->read();
       for (PointAnswer& answer : answers) {
+        if (answer.failed) continue;
         time_.add(answer.seconds);
-        if (!answer.failed) measured_.push_back(measured(answer));
+        measured_.push_back(measured(answer));
       }
       for (const PointAnswer& answer : answers) {  // last: this may throw
         if (answer.failed) {
@@ -222,6 +226,7 @@ class Worker {
 
   void store() {
     if (measured_.empty()) return;
+    files_.refuse_changed();
     queue_.finish(measured_);
     work_.finished += static_cast<int>(measured_.size());
     for (const MeasuredPoint& point : measured_) held_.erase(point.index);
@@ -239,6 +244,7 @@ class Worker {
 
   StudyQueue& queue_;
   const Study& study_;
+  const InputFiles& files_;
   const TrialFunction& trial_;
   const QueueServer& server_;
   const QueueWorkOptions& options_;
@@ -274,12 +280,14 @@ QueueWork work_on_queue(const Study& study, const StudyCheck& check, const Trial
   StudyQueue queue(server);
   const int jobs =
       options.jobs > 0 ? options.jobs : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const CheckedInputs inputs = check_inputs(study, check, jobs);
   try {
-    queue.join({.study = study, .inputs = check_study(study, check, jobs), .commit = options.commit}, jobs);
+    queue.join({.study = study, .inputs = inputs.fingerprint, .commit = options.commit}, jobs);
   } catch (const QueueStopped&) {
     return {};
   }
-  Worker worker(queue, study, trial, server, options, jobs);
+  std::signal(SIGCHLD, SIG_DFL);  // one that ignores it hides how the processes of points ended
+  Worker worker(queue, study, inputs.files, trial, server, options, jobs);
   try {
     worker.run();
   } catch (const QueueStopped&) {  // while the server is away

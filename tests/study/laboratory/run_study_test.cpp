@@ -240,6 +240,40 @@ TEST(RunStudy, KnowsWhenWhatThePointsReadHasChanged) {
             expected_csv());
 }
 
+TEST(RunStudy, EndsIfAFileOfItsInputsChangesAndGoesOnOnceThatIsRestored) {
+  const TemporaryFolder folder;
+  for (const bool content_is_compared : {true, false}) {
+    const auto file = folder / "device.toml";
+    const auto out = folder / (content_is_compared ? "a" : "b");
+    write_text_file(file, "mass = 1\n");
+    const auto check = [&](const Overrides&) {
+      StudyInputs inputs{.text = "mass 1", .files = {}, .read = {}};
+      (content_is_compared ? inputs.files : inputs.read).push_back(file);
+      return inputs;
+    };
+    const auto changing = [&](const Overrides& overrides, double k, double press, std::uint64_t seed) {
+      // Point 8 is the first of the third variant.
+      if (testing::number_of(overrides, "synthetic.gain", 1.0) == 3.0) write_text_file(file, "mass = 10\n");
+      return synthetic_trial(overrides, k, press, seed);
+    };
+    try {
+      static_cast<void>(run_study(twelve_points(), check, changing, out, options_for(1)));
+      ADD_FAILURE() << "points of both contents are in one result";
+    } catch (const std::runtime_error& error) {
+      EXPECT_THAT(error.what(), ::testing::AllOf(HasSubstr("device.toml"), HasSubstr("was changed"),
+                                                 HasSubstr("--restart")));
+    }
+    EXPECT_EQ(read_journal(out / "points.jsonl").points.size(), 8U);
+    if (content_is_compared) {
+      EXPECT_THROW(static_cast<void>(run_study(twelve_points(), check, synthetic_trial, out, options_for(1))),
+                   std::invalid_argument);
+    }
+    write_text_file(file, "mass = 1\n");
+    EXPECT_EQ(csv_of(run_study(twelve_points(), check, synthetic_trial, out, options_for(1))),
+              expected_csv());
+  }
+}
+
 // A build with changes is not told from another one by its commit alone.
 TEST(RunStudy, NamesTheProgramWithItsFingerprintWhereTheCommitDoesNotSayAll) {
   const std::string commit = built_from_commit();
@@ -328,6 +362,16 @@ TEST_F(Shards, MissingPointsInARowAreListedAsARange) {
   write_text_file(folder / "a" / "points.jsonl", journal_text(left));
   expect_refusal([&] { static_cast<void>(merge_studies({folder / "a"}, folder / "all")); },
                  {"7 of 12 points are missing: 1-3, 5-6, 9, 11;"});
+}
+
+TEST_F(Shards, ManyMissingPointsAreCounted) {
+  const Study study =
+      study_of("scene = \"a\"\nseeds = 1\n[[axis]]\nkey = \"b\"\nfrom = 0\nto = 99\nstep = 1");
+  StudyOptions half = options_for(2);
+  half.shard = {.index = 1, .count = 2};
+  static_cast<void>(run_study(study, no_inputs, synthetic_trial, folder / "a", half));
+  expect_refusal([&] { static_cast<void>(merge_studies({folder / "a"}, folder / "all")); },
+                 {"50 of 100 points are missing: 1, 3, ", ", 37, 39 and 30 more; run the shards"});
 }
 
 TEST_F(Shards, OfAnotherStudyAreRefused) {

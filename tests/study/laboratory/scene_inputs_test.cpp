@@ -63,6 +63,13 @@ TEST(SceneInputs, AreTheFilesOfObjectAndMotionTooAndWhatIsInThem) {
   EXPECT_NE(check_study(study, scene_check(study)), other_object);
 }
 
+TEST(SceneInputs, NameTheFilesOfDeviceAndPatientWithTheirBases) {
+  StudyInputs inputs = scene_check(study_of("scene = \"press_teapot\""))({{"device.file", "\"light\""}});
+  std::vector<std::string> read;
+  for (const auto& file : inputs.read) read.push_back(file.filename().string());
+  EXPECT_THAT(read, ::testing::ElementsAre("light.toml", "beihang.toml", "adult.toml"));
+}
+
 TEST(SceneInputs, DependOnDeviceAndPatient) {
   const StudyCheck check = scene_check(study_of("scene = \"press_teapot\""));
   const std::string as_it_is = check({}).text;

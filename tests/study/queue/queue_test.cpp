@@ -335,6 +335,8 @@ TEST_F(StudyQueueTest, WorkersOfAnotherStudyProgramOrSceneAreRefused) {
   other = header();
   other.study.seeds = 4;
   testing::expect_refusal([&] { queue.join(other, 1); }, {"the study file has changed since"});
+  sql("UPDATE phalanx.studies SET header = '{\"of\": \"a version to come\"}'");
+  testing::expect_refusal([&] { queue.join(other, 1); }, {"begun by another version of the program"});
 }
 
 TEST_F(StudyQueueTest, TheFirstWorkersMathematicalFunctionsAreTheStudys) {
@@ -354,6 +356,44 @@ TEST_F(StudyQueueTest, TheFirstWorkersMathematicalFunctionsAreTheStudys) {
   sql("UPDATE phalanx.studies SET libm = 'other'");
   sql("UPDATE phalanx.points SET result = '{}' WHERE point = 5");
   testing::expect_refusal([&] { StudyQueue(address()).join(header(), 1); }, {"rounds differently"});
+}
+
+TEST_F(StudyQueueTest, AWorkerWhoseMathematicalFunctionsWereReplacedMeanwhileStoresNothing) {
+  create();
+  StudyQueue cut_off(address());
+  cut_off.join(header(), 1);
+  EXPECT_THAT(cut_off.take(1), ElementsAre(0));
+  sql("UPDATE phalanx.studies SET libm = 'other'");  // as a worker of another type does once this one's lease is over
+  testing::expect_refusal([&] { cut_off.finish({{.index = 0, .seconds = 1.0, .result = "{}"}}); },
+                          {"rounds differently", "--restart"});
+  EXPECT_EQ(number("SELECT count(*) FROM phalanx.points WHERE result IS NOT NULL"), 0);
+}
+
+TEST_F(StudyQueueTest, AWorkerOneOfWhoseFilesChangesEndsAndStoresNothingMeasuredSince) {
+  const auto file = folder_ / "device.toml";
+  std::ofstream(file) << "mass = 1\n";
+  const auto check = [&](const Overrides&) {
+    return StudyInputs{.text = "mass 1", .files = {}, .read = {file}};
+  };
+  StudyQueue(address()).create({.study = study_, .inputs = check_study(study_, check), .commit = "test"},
+                               kLongLease, false);
+  const auto changing = [&](const Overrides& overrides, double k, double press, std::uint64_t seed) {
+    if (testing::number_of(overrides, "synthetic.gain", 1.0) == 2.0) std::ofstream(file) << "mass = 10\n";
+    return testing::synthetic_trial(overrides, k, press, seed);
+  };
+  const QueueWorkOptions options{.commit = "test", .jobs = 1, .finished = {}};
+  try {
+    static_cast<void>(work_on_queue(study_, check, changing, address(), options));
+    ADD_FAILURE() << "points of both contents are in one study";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("device.toml"), HasSubstr("was changed")));
+  }
+  EXPECT_EQ(number("SELECT count(*) FROM phalanx.points WHERE result IS NOT NULL AND point >= 4"), 0)
+      << "points 4 to 7 change the file";
+  EXPECT_EQ(number("SELECT count(*) FROM phalanx.points WHERE worker IS NOT NULL AND result IS NULL"), 0)
+      << "given back";
+  std::ofstream(file) << "mass = 1\n";
+  EXPECT_TRUE(work_on_queue(study_, check, testing::synthetic_trial, address(), options).whole);
 }
 
 TEST_F(StudyQueueTest, AJournalOfAnotherMachineDoesNotEnter) {

@@ -12,10 +12,12 @@
 
 namespace phalanx {
 
-/// Inputs of a run besides the study and the program. A journal stays valid as long as they stay the same.
+/// Inputs of a run besides the study and the program. A journal stays valid as long as they stay the same. A run ends
+/// if one of their files changes.
 struct StudyInputs {
-  std::string text;                          ///< numbers, as text
-  std::vector<std::filesystem::path> files;  ///< compared by name and content, without their folders
+  std::string text;                           ///< numbers, as text
+  std::vector<std::filesystem::path> files;   ///< compared by name and content, without their folders
+  std::vector<std::filesystem::path> read{};  ///< files that `text` comes from
 };
 
 /// Function that checks overrides by loading the scene with them, before anything runs. It throws
@@ -75,7 +77,8 @@ struct StudyOptions {
 /// @throws SceneError before anything runs if scene, device or patient of a point cannot be loaded
 /// @throws std::invalid_argument if the journal belongs to another study, another process writes it, or the
 /// folder cannot be used
-/// @throws std::runtime_error if a point failed (naming the first) or the journal cannot be written
+/// @throws std::runtime_error if a point failed (naming the first), an input's file was changed since the call began
+/// (a point that was measured since the last one that was finished is not kept), or the journal cannot be written
 [[nodiscard]] std::vector<PointResult> run_study(const Study& study, const StudyCheck& check,
                                                  const TrialFunction& trial, const std::filesystem::path& out,
                                                  const StudyOptions& options);
