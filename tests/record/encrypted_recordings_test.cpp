@@ -33,7 +33,7 @@ using ::testing::ThrowsMessage;
 constexpr const char* kName = "2026-11-28T10-00-00Z.mcap.enc";
 constexpr double kNamedBegin = 1795860000.0;  // that date: UTC [s since 1970]
 
-constexpr const char* kEvent = "P07 presses";  // ciphertext of 9 kB holds a given "P07" in one of 2,000
+constexpr const char* kEvent = "P07 presses";  // a given "P07" is in 1 % of ciphertexts of 175 kB
 
 class EncryptedRecordings : public ::testing::Test {
  protected:

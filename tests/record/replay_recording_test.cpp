@@ -336,7 +336,7 @@ TEST_F(RecordedEncrypted, NothingOfTheSessionIsOnTheDiskAsItIs) {
   recorder->event("marker", "", "a remarkable word");
   pass(1.0);
   const std::string bytes = finished();
-  // Five bytes at least: random bytes of this size hold given four in one run of 10,000.
+  // Five bytes at least: given four are in random bytes of this size by chance too often.
   for (const char* text : {"MCAP0", "phalanx", "first_touch", "simulated", "remarkable", "/step"})
     EXPECT_EQ(bytes.find(text), std::string::npos) << text;
   EXPECT_EQ(bytes.find(std::string("\4\0\0\0zstd", 8)), std::string::npos) << "a chunk's compression";
