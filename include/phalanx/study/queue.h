@@ -106,8 +106,9 @@ struct QueueWork {
 /// @throws std::invalid_argument if the queue does not have the study, or has it of another study file, other
 /// scene files, another program or a first worker whose mathematical functions round differently; and if the limit
 /// is below 0
-/// @throws std::runtime_error as run_on_queue(); if a point has another result already; and after 20 failures
-/// without a result between them, since the cause is then more likely this machine than the points
+/// @throws std::runtime_error as run_on_queue(); if a point has another result already; if a file of the inputs was
+/// changed since the call began (what was measured since is not stored); and after 20 failures without a result
+/// between them, since the cause is then more likely this machine than the points
 [[nodiscard]] QueueWork work_on_queue(const Study& study, const StudyCheck& check, const TrialFunction& trial,
                                       const QueueServer& server, const QueueWorkOptions& options);
 

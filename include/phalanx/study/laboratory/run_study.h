@@ -77,8 +77,8 @@ struct StudyOptions {
 /// @throws SceneError before anything runs if scene, device or patient of a point cannot be loaded
 /// @throws std::invalid_argument if the journal belongs to another study, another process writes it, or the
 /// folder cannot be used
-/// @throws std::runtime_error if a point failed (naming the first), an input's file was changed since the call began
-/// (a point that was measured since the last one that was finished is not kept), or the journal cannot be written
+/// @throws std::runtime_error if a point failed (naming the first), a file of the inputs was changed since the call
+/// began (the points that were measured since are not kept), or the journal cannot be written
 [[nodiscard]] std::vector<PointResult> run_study(const Study& study, const StudyCheck& check,
                                                  const TrialFunction& trial, const std::filesystem::path& out,
                                                  const StudyOptions& options);
