@@ -7,8 +7,8 @@
 #
 # OUT is a folder that all nodes share. A task that is ended early, by a time limit, a failure of its node or scancel, is repeated with its
 # number alone, --array=7 for the seventh: it goes on where its journal ends. Slurm repeats a task of a failed node itself (--requeue).
-# PHALANX names the program; else it is the one in PATH. Processors of different types may round a sine differently in its last bit:
-# --constraint=TYPE keeps the tasks on nodes of one type where results must be those of one machine to the last bit.
+# PHALANX names the program; else it is the one in PATH. Processors of different types may round a sine differently in its last bit;
+# shards of such machines are not merged. --constraint=TYPE keeps the tasks on nodes of one type.
 #SBATCH --job-name=phalanx-study
 #SBATCH --cpus-per-task=2
 #SBATCH --requeue

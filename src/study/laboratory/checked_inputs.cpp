@@ -69,31 +69,53 @@ void for_each_on_threads(int count, int threads, const std::function<void(int)>&
   first.rethrow_if_any();
 }
 
+[[noreturn]] void refuse_changing(const std::filesystem::path& file) {
+  throw std::runtime_error(
+      fmt::format("{}: changed while the points were checked; nothing was begun, type the same command again",
+                  file.string()));
+}
+
 }  // namespace
 
 InputFiles::State InputFiles::state_of(const std::filesystem::path& file) noexcept {
   struct stat now{};
   if (::stat(file.c_str(), &now) != 0) return {};
-  return {.inode = now.st_ino,
+  return {.device = now.st_dev,
+          .inode = now.st_ino,
           .size = static_cast<std::int64_t>(now.st_size),
           .seconds = now.st_mtim.tv_sec,
           .nanoseconds = now.st_mtim.tv_nsec};
 }
 
-void InputFiles::add(const std::filesystem::path& file) {
-  if (const auto place = states_.lower_bound(file); place == states_.end() || place->first != file)
-    states_.emplace_hint(place, file, state_of(file));
+bool InputFiles::add(const std::filesystem::path& file) {
+  const auto place = states_.lower_bound(file);
+  if (place != states_.end() && place->first == file) return false;
+  states_.emplace_hint(place, file, state_of(file));
+  return true;
+}
+
+const std::filesystem::path* InputFiles::changed() const {
+  for (const auto& [file, state] : states_) {
+    if (state_of(file) != state) return &file;
+  }
+  return nullptr;
 }
 
 void InputFiles::refuse_changed() const {
-  for (const auto& [file, state] : states_) {
-    if (state_of(file) == state) continue;
+  if (const std::filesystem::path* file = changed())
     throw std::runtime_error(fmt::format(
         "{}: was changed or removed while the study ran, so that points may have been measured with "
         "either content; those that were finished before are kept. Restore the file and type the "
         "same command again, or measure all with the new content (--restart)",
-        file.string()));
-  }
+        file->string()));
+}
+
+TrialFunction checked_trial(const TrialFunction& trial, const InputFiles& files) {
+  return [&trial, &files](const Overrides& overrides, double stiffness, double press, std::uint64_t seed) {
+    TrialResult result = trial(overrides, stiffness, press, seed);
+    files.refuse_changed();
+    return result;
+  };
 }
 
 CheckedInputs check_inputs(const Study& study, const StudyCheck& check, int jobs) {
@@ -116,17 +138,28 @@ CheckedInputs check_inputs(const Study& study, const StudyCheck& check, int jobs
                                      point_text(study, point), error.what()));
       }
     });
-    for (StudyInputs& input : inputs) {
-      texts.add(input.text);
-      for (const auto& file : input.read) states.add(file);
-      for (auto& file : input.files) {
-        states.add(file);
-        files.insert(std::move(file));
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+      StudyInputs& input = inputs[i];
+      std::filesystem::path first_new;
+      for (const auto* list : {&input.read, &input.files}) {
+        for (const auto& file : *list) {
+          if (states.add(file) && first_new.empty()) first_new = file;
+        }
       }
+      // It was read before its state was: what is read since must be the same.
+      if (!first_new.empty()) {
+        const StudyPoint point = study_point(study, begin + static_cast<int>(i));
+        const StudyInputs again = check(point_overrides(study, point));
+        if (again.text != input.text || again.read != input.read || again.files != input.files)
+          refuse_changing(first_new);
+      }
+      texts.add(input.text);
+      for (auto& file : input.files) files.insert(std::move(file));
     }
   }
-  return {.fingerprint = texts.text() + fingerprint_of_files({files.begin(), files.end()}),
-          .files = std::move(states)};
+  std::string fingerprint = texts.text() + fingerprint_of_files({files.begin(), files.end()});
+  if (const auto* file = states.changed()) refuse_changing(*file);
+  return {.fingerprint = std::move(fingerprint), .files = std::move(states)};
 }
 
 std::string check_study(const Study& study, const StudyCheck& check, int jobs) {

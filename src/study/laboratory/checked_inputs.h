@@ -12,17 +12,21 @@
 
 namespace phalanx {
 
-/// Files as they were when they were added: inode, size and time of the last change of content. A file that was changed
-/// and restored has another time.
+/// Files as they were when they were added: device, inode, size and time of the last change of content. A file that was
+/// written again with its old content has another time. One that was moved away and back has not: checked_trial()
+/// finds it while another file stands in its place.
 class InputFiles {
  public:
-  /// Adds a file as it is now, unless it was added before.
-  void add(const std::filesystem::path& file);
-  /// @throws std::runtime_error naming the first file that is not as it was, or is gone. Several threads may call it.
+  /// Adds a file as it is now. @returns false if it was added before
+  bool add(const std::filesystem::path& file);
+  /// @returns the first file that is not as it was, or is gone; null if there is none. Several threads may call it.
+  [[nodiscard]] const std::filesystem::path* changed() const;
+  /// @throws std::runtime_error naming changed(). Several threads may call it.
   void refuse_changed() const;
 
  private:
   struct State {
+    std::uint64_t device = 0;
     std::uint64_t inode = 0;
     std::int64_t size = -1;  ///< [byte]; -1: there is no file
     std::int64_t seconds = 0;
@@ -41,6 +45,10 @@ struct CheckedInputs {
 };
 
 /// As check_study(), with the files as they were when their points were checked.
+/// @throws std::runtime_error naming a file that changes meanwhile
 [[nodiscard]] CheckedInputs check_inputs(const Study& study, const StudyCheck& check, int jobs);
+
+/// @returns `trial`, and after each trial InputFiles::refuse_changed(). Both arguments must outlive it.
+[[nodiscard]] TrialFunction checked_trial(const TrialFunction& trial, const InputFiles& files);
 
 }  // namespace phalanx

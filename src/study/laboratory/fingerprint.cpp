@@ -8,6 +8,8 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "phalanx/record/made.h"
+
 namespace phalanx {
 namespace {
 
@@ -46,5 +48,7 @@ std::string fingerprint_of_files(std::vector<std::filesystem::path> files) {
   for (const std::string& content : contents) all.add(content);
   return all.text();
 }
+
+std::string libm_text() { return fmt::format("{:016x}", libm_fingerprint()); }
 
 }  // namespace phalanx

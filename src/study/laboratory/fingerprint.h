@@ -26,4 +26,7 @@ class Fingerprint {
 /// @throws std::runtime_error naming the file if one cannot be read.
 [[nodiscard]] std::string fingerprint_of_files(std::vector<std::filesystem::path> files);
 
+/// @returns libm_fingerprint() as 16 hexadecimal digits.
+[[nodiscard]] std::string libm_text();
+
 }  // namespace phalanx

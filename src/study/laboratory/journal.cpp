@@ -110,14 +110,21 @@ void Journal::take_up(const JournalHeader& header) {
     synchronise_folder_of(file_);
     return;
   }
-  const JournalContent there = parse_journal(std::move(text), file_);
+  JournalContent there = parse_journal(std::move(text), file_);
+  if (there.points.empty()) there.header.libm.clear();  // nothing was measured
   if (const std::string problem = difference(there.header, header); !problem.empty()) {
     throw std::invalid_argument(
         fmt::format("{}: {}; use another --out folder, or --restart to throw its {} finished points away",
                     file_.string(), problem, there.points.size()));
   }
+  if (there.points.empty()) {  // begins with this machine's libm
+    if (::ftruncate(descriptor_, 0) != 0) fail("emptied");
+    write_line(header_text);
+    return;
+  }
   if (complete < size && ::ftruncate(descriptor_, static_cast<off_t>(complete)) != 0) fail("shortened");
-  finished_ = there.points;
+  finished_ = std::move(there.points);
+  libm_ = std::move(there.header.libm);
 }
 
 void Journal::append(const PointResult& result) {

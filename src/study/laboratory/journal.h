@@ -17,6 +17,7 @@ struct JournalHeader {
   Study study;
   std::string inputs;  ///< fingerprint of the points' inputs (check_study())
   std::string commit;  ///< commit of the program
+  std::string libm{};  ///< libm_text() of the machines that measured the points; empty: not known, fits any
 };
 
 /// Content of a journal.
@@ -68,6 +69,8 @@ class Journal {
 
   /// @returns the points that it held when it was opened.
   [[nodiscard]] const std::vector<PointResult>& finished() const noexcept { return finished_; }
+  /// @returns JournalHeader::libm of those points; empty if there are none.
+  [[nodiscard]] const std::string& libm() const noexcept { return libm_; }
 
   /// Adds one line by a single write and waits until it is on the disk. Thread-safe.
   /// @throws std::runtime_error if that fails; the file then ends with its last complete line.
@@ -85,6 +88,7 @@ class Journal {
   int descriptor_;
   std::mutex mutex_;
   std::vector<PointResult> finished_;
+  std::string libm_;
 };
 
 }  // namespace phalanx

@@ -24,17 +24,19 @@ std::string line_of(const OrderedJson& json) {
 }
 
 std::string header_line(const JournalHeader& header) {
-  return line_of({{kFormatKey, kFormat},
-                  {"commit", header.commit},
-                  {"inputs", header.inputs},
-                  {"study", study_to_json(header.study)}});
+  OrderedJson json{{kFormatKey, kFormat}, {"commit", header.commit}, {"inputs", header.inputs}};
+  if (!header.libm.empty()) json["libm"] = header.libm;
+  json["study"] = study_to_json(header.study);
+  return line_of(json);
 }
 
 JournalHeader header_from(const std::string& line) {
   const OrderedJson json = parse_json(line);
   if (json.at(kFormatKey) != kFormat) throw std::out_of_range("it is of another format");
-  return {
-      .study = study_from_json(json.at("study")), .inputs = json.at("inputs"), .commit = json.at("commit")};
+  return {.study = study_from_json(json.at("study")),
+          .inputs = json.at("inputs"),
+          .commit = json.at("commit"),
+          .libm = json.value("libm", "")};
 }
 
 class Lines {
@@ -92,6 +94,9 @@ std::string difference(const JournalHeader& journal, const JournalHeader& now) {
   if (journal.commit != now.commit)
     return fmt::format("it was made by another version of the program ({}, this is {})", journal.commit,
                        now.commit);
+  if (!journal.libm.empty() && !now.libm.empty() && journal.libm != now.libm)
+    return "it was measured on a machine whose sine, exponential or another mathematical function rounds "
+           "differently";
   return "";
 }
 

@@ -58,7 +58,8 @@ std::string ranges(const std::vector<int>& numbers) {
 class Union {
  public:
   void add(const fs::path& file) {
-    const JournalContent content = read_journal(file);
+    JournalContent content = read_journal(file);
+    if (content.points.empty()) content.header.libm.clear();
     if (!header_) {
       header_ = content.header;
       first_ = file;
@@ -66,6 +67,7 @@ class Union {
       throw std::invalid_argument(fmt::format("{} does not fit {}: {}; merge only parts of one study",
                                               file.string(), first_.string(), problem));
     }
+    if (header_->libm.empty()) header_->libm = content.header.libm;
     for (const PointResult& result : content.points) add(result, file);
   }
 

@@ -73,6 +73,16 @@ OrderedJson checked_json(const StiffnessVerdict& checked) {
           {"position_swing_mm", in_unit(checked.position_swing, kToMilli)}};
 }
 
+/// The text of a value within a document that is indented by 2. @param margin  of the value's lines after the first
+std::string indented(const OrderedJson& json, std::string_view margin) {
+  std::string text;
+  for (const char c : json.dump(2, ' ', false, OrderedJson::error_handler_t::replace)) {
+    text += c;
+    if (c == '\n') text += margin;  // no string holds one: JSON escapes it
+  }
+  return text;
+}
+
 OrderedJson point_json(const Study& study, const PointResult& result) {
   const StudyPoint point = study_point(study, result.index);
   OrderedJson json = OrderedJson::object();
@@ -121,12 +131,15 @@ std::string study_csv(const Study& study, const std::vector<PointResult>& result
 
 std::string study_summary_json(const Study& study, const std::vector<PointResult>& results,
                                const Made& made) {
-  OrderedJson json = OrderedJson::object();
-  json["study"] = study_to_json(study);
-  json["points"] = OrderedJson::array();
-  for (const PointResult& result : results) json["points"].push_back(point_json(study, result));
-  json["made"] = made_json(made);
-  return json.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
+  std::string text = "{\n  \"study\": " + indented(study_to_json(study), "  ") + ",\n  \"points\": [";
+  const char* before = "\n    ";
+  for (const PointResult& result : results) {  // one after the other: a study has up to a million
+    text += before;
+    text += indented(point_json(study, result), "    ");
+    before = ",\n    ";
+  }
+  text += results.empty() ? "]" : "\n  ]";
+  return text + ",\n  \"made\": " + indented(made_json(made), "  ") + "\n}\n";
 }
 
 void remove_study_outputs(const std::filesystem::path& out) {

@@ -109,14 +109,16 @@ std::vector<int> without(std::vector<int> points, const std::vector<PointResult>
 
 /// Measures points. If the journal cannot be written, the run ends: further results would be lost.
 void measure_points(const std::vector<int>& points, const Study& study, const TrialFunction& trial,
-                    Journal& journal, Progress& progress, Failures& failures) {
+                    const InputFiles& files, Journal& journal, Progress& progress, Failures& failures) {
+  const TrialFunction checked = checked_trial(trial, files);
   std::atomic<std::size_t> next{0};
   tbb::parallel_for_each(points, [&](int) {
     const int index = points[next++];  // in order, independent of oneTBB's order
     PointResult result;
     try {
-      result = measure_point(study, index, trial);
+      result = measure_point(study, index, checked);
     } catch (const std::exception& error) {
+      files.refuse_changed();  // ends the run: every further point would fail
       failures.add(index, error_text(error));
       return;
     } catch (...) {
@@ -162,7 +164,8 @@ std::string program_version() {
 std::vector<PointResult> run_study(const Study& study, const StudyCheck& check, const TrialFunction& trial,
                                    const std::filesystem::path& out, const StudyOptions& options) {
   const CheckedInputs inputs = check_inputs(study, check, options.jobs);
-  const JournalHeader header{.study = study, .inputs = inputs.fingerprint, .commit = options.commit};
+  const JournalHeader header{
+      .study = study, .inputs = inputs.fingerprint, .commit = options.commit, .libm = libm_text()};
   prepare_output_folder(out);
   Journal journal(out / journal_name(options.shard.index, options.shard.count), header, options.restart);
   refuse_points_of_others(journal, options.shard);
@@ -176,7 +179,7 @@ std::vector<PointResult> run_study(const Study& study, const StudyCheck& check, 
   arena.initialize();  // without memory for this, the end of an earlier global_control would wait without end
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(jobs));
-  arena.execute([&] { measure_points(left, study, trial, journal, progress, failures); });
+  arena.execute([&] { measure_points(left, study, trial, inputs.files, journal, progress, failures); });
   failures.throw_if_any(study);
   return progress.results();
 }

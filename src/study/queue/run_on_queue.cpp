@@ -53,12 +53,12 @@ std::vector<MeasuredPoint> missing_of(const std::vector<PointResult>& journal, c
 }
 
 /// Stores results of a journal, in portions that one statement takes.
+/// @param libm  of the machine that measured them
 /// @throws std::invalid_argument if points in the queue were measured with mathematical functions that round differently
-/// from this machine's
-void store(StudyQueue& queue, const std::vector<MeasuredPoint>& missing) {
+void store(StudyQueue& queue, const std::vector<MeasuredPoint>& missing, const std::string& libm) {
   constexpr std::ptrdiff_t kPortion = 500;
   if (missing.empty()) return;
-  queue.claim_for_journal();
+  queue.claim_for_journal(libm);
   for (auto begin = missing.begin(); begin != missing.end();) {
     const auto end = begin + std::min(kPortion, std::distance(begin, missing.end()));
     queue.finish({begin, end});
@@ -152,7 +152,7 @@ QueuedResults run_on_queue(const Study& study, const StudyCheck& check, const st
                            const QueueServer& server, const QueueRunOptions& options) {
   StudyQueue queue(server);  // first: an address or tables that are refused must not change a file
   queue.prepare(options.lease_s);
-  const JournalHeader header{.study = study, .inputs = check_study(study, check), .commit = options.commit};
+  JournalHeader header{.study = study, .inputs = check_study(study, check), .commit = options.commit};
   prepare_output_folder(out);
   const auto file = out / journal_name(1, 1);
   Journal journal(file);  // no other process may write the file
@@ -170,7 +170,7 @@ QueuedResults run_on_queue(const Study& study, const StudyCheck& check, const st
     queue.collect(stored);
     const std::vector<MeasuredPoint> missing = missing_of(journal.finished(), stored);
     results.merge(stored);
-    store(queue, missing);
+    store(queue, missing, journal.libm());
     if (options.retry) queue.retry_quarantined();
     remove_study_outputs(out);
     Watch watch(queue, study, server, options);
@@ -179,9 +179,15 @@ QueuedResults run_on_queue(const Study& study, const StudyCheck& check, const st
     queued.quarantined = queue.quarantined();
     queued.processors = queue.processors();
   } catch (const QueueStopped&) {  // while the server is away
+    if (!begun)
+      throw std::runtime_error(
+          "stopped while the server is away, before the study was begun again; what the journal has is kept. "
+          "Type "
+          "the same command again");
   } catch (...) {
     failure = std::current_exception();
   }
+  header.libm = queue.collected_libm().empty() ? journal.libm() : queue.collected_libm();
   queued.results = in_order(results);
   queued.whole = static_cast<int>(results.size()) == point_count(study);
   try {

@@ -72,7 +72,7 @@ constexpr const char* kTake = R"(WITH next AS MATERIALIZED (
   FROM next WHERE points.study = :study AND points.point = next.point
   RETURNING points.point)";
 
-// Stores only if the study still has this machine's libm: another worker may have set its own while this one was cut
+// Stores only if the study still has the libm of what is stored: another worker may have set its own while this one was cut
 // off. The key's lock waits for claim_libm(), but not for another kFinish.
 // @returns one row: whether the study is there, whether it has this libm, and a point that had another result, with
 // where that was measured; -1: none.
@@ -94,7 +94,8 @@ constexpr const char* kFinish = R"(WITH sent AS MATERIALIZED (
 
 // ORDER BY names the columns, not the text, so that the index points_finished has the order.
 constexpr const char* kCollect =
-    R"(SELECT result, CAST(points.finished_at AS text) AS finished_text, point FROM phalanx.points
+    R"(SELECT result, CAST(points.finished_at AS text) AS finished_text, point,
+    (SELECT libm FROM phalanx.studies WHERE id = :study) FROM phalanx.points
   WHERE study = :study AND result IS NOT NULL
     AND (points.finished_at, points.point) > (CAST(:after AS timestamptz), :point)
   ORDER BY points.finished_at, points.point LIMIT :most)";
@@ -138,15 +139,16 @@ std::string remedy_of(const std::string& why) {
   return "";
 }
 
-std::string libm_here() { return fmt::format("{:016x}", libm_fingerprint()); }
-
 /// @throws std::invalid_argument
-[[noreturn]] void refuse_libm() {
-  throw std::invalid_argument(
-      "this machine's sine, exponential or another mathematical function rounds differently from that of "
-      "the machines that measured points of the study, so that results would differ; work on machines with "
-      "the same processor type and the same libm, or measure all again on this type (phalanx study run "
-      "--restart)");
+[[noreturn]] void refuse_libm(bool of_journal) {
+  throw std::invalid_argument(fmt::format(
+      "{} sine, exponential or another mathematical function rounds differently from that of "
+      "the machines that measured points of the study, so that results would differ; {}, or measure all "
+      "again on "
+      "one type of machine (phalanx study run --restart)",
+      of_journal ? "the points of the journal were measured on a machine whose" : "this machine's",
+      of_journal ? "use another --out folder"
+                 : "work on machines with the same processor type and the same libm"));
 }
 
 std::string host_here() {
@@ -215,6 +217,7 @@ struct StudyQueue::Session {
 StudyQueue::StudyQueue(const QueueServer& server)
     : server_(server),
       connection_(queue_connection(server.url)),
+      libm_(libm_text()),
       worker_host_(host_here()),
       worker_place_(fmt::format("{} {}", worker_host_, ::getpid())) {
   try {
@@ -354,30 +357,30 @@ void StudyQueue::find_study(Session& session, const JournalHeader& header) {
   if (!session.sql.got_data()) study_ = 0;
 }
 
-/// Compares this machine with the study's libm, which it sets if no result and no living worker depends on it. Keeps
-/// the study's row locked until the transaction ends.
-void StudyQueue::claim_libm(Session& session) {
-  const std::string here = libm_here();
-  std::string known = here;
+/// Compares libm_ with the study's, which it sets if no result and no living worker depends on it. Keeps the study's row
+/// locked until the transaction ends.
+void StudyQueue::claim_libm(Session& session, bool of_journal) {
+  std::string known = libm_;
   int bound = 0;
   session.sql << "SELECT libm FROM phalanx.studies WHERE id = :study FOR UPDATE", soci::into(known),
       soci::use(study_, "study");
-  if (!session.sql.got_data() || known == here) return;
+  if (!session.sql.got_data() || known == libm_) return;
   session.sql << R"(SELECT CAST(
         EXISTS (SELECT 1 FROM phalanx.points WHERE study = :study AND result IS NOT NULL) OR
         EXISTS (SELECT 1 FROM phalanx.workers WHERE study = :study AND ended IS NULL
                 AND greatest(seen, pg_postmaster_start_time())
                   + make_interval(secs => CAST(:lease AS double precision)) > clock_timestamp()) AS integer))",
       soci::into(bound), soci::use(study_, "study"), soci::use(lease_s_, "lease");
-  if (bound != 0) refuse_libm();
-  session.sql << "UPDATE phalanx.studies SET libm = :here WHERE id = :study", soci::use(here, "here"),
+  if (bound != 0) refuse_libm(of_journal);
+  session.sql << "UPDATE phalanx.studies SET libm = :libm WHERE id = :study", soci::use(libm_, "libm"),
       soci::use(study_, "study");
 }
 
-void StudyQueue::claim_for_journal() {
+void StudyQueue::claim_for_journal(const std::string& libm) {
+  if (!libm.empty()) libm_ = libm;
   attempt([&](Session& session) {
     soci::transaction transaction(session.sql);
-    claim_libm(session);
+    claim_libm(session, true);
     transaction.commit();
   });
 }
@@ -408,7 +411,7 @@ void StudyQueue::join(const JournalHeader& header, int jobs) {
   const std::string cpu = plain(made_here().cpu);
   attempt([&](Session& session) {
     soci::transaction transaction(session.sql);
-    claim_libm(session);
+    claim_libm(session, false);
     session.sql << R"(INSERT INTO phalanx.workers (study, host, place, cpu, jobs)
                       VALUES (:study, :host, :place, :cpu, :jobs) RETURNING id)",
         soci::into(worker_), soci::use(study_, "study"), soci::use(worker_host_, "host"),
@@ -456,18 +459,17 @@ void StudyQueue::finish(const std::vector<MeasuredPoint>& measured) {
   for (const MeasuredPoint& point : measured)
     json.push_back({{"point", point.index}, {"seconds", point.seconds}, {"result", point.result}});
   const std::string sent = json.dump(-1, ' ', true, OrderedJson::error_handler_t::replace);
-  const std::string libm = libm_here();
   int studies = 0;
   int bound = 0;
   int other = -1;
   std::string place;
   attempt([&](Session& session) {
     session.sql << kFinish, soci::into(studies), soci::into(bound), soci::into(other), soci::into(place),
-        soci::use(sent, "sent"), soci::use(study_, "study"), soci::use(libm, "libm"),
+        soci::use(sent, "sent"), soci::use(study_, "study"), soci::use(libm_, "libm"),
         soci::use(worker_, "worker");
   });
   refuse_removed(studies);
-  if (bound == 0) refuse_libm();
+  if (bound == 0) refuse_libm(worker_ == 0);
   if (other >= 0)
     throw std::runtime_error(fmt::format(
         "point {} has another result in the queue already: this machine ({}) and that of the first "
@@ -577,6 +579,7 @@ void StudyQueue::collect(std::map<int, PointResult>& results) {
         last = row.get<std::string>(1);
         last_point = row.get<int>(2);
         ++count;
+        collected_libm_ = row.get<std::string>(3);
         if (results.contains(last_point)) continue;
         results.emplace(last_point, result_from_json(parse_json(row.get<std::string>(0))));
       }

@@ -46,9 +46,12 @@ class StudyQueue {
   void create(const JournalHeader& header, double lease_s, bool restart);
   /// Lets quarantined points be tried again.
   void retry_quarantined();
-  /// Makes the study's mathematical functions those of this machine, before points of a journal enter the queue.
+  /// Makes the study's mathematical functions, and those of what finish() stores, the ones of a journal, before its
+  /// points enter the queue. @param libm  of the journal; empty: this machine's
   /// @throws std::invalid_argument if points were measured with others
-  void claim_for_journal();
+  void claim_for_journal(const std::string& libm);
+  /// @returns libm_text() of the machines that measured what collect() added; empty if it added nothing.
+  [[nodiscard]] const std::string& collected_libm() const noexcept { return collected_libm_; }
   /// @returns the processors of the workers, each once, or an empty text.
   [[nodiscard]] std::string processors();
   /// Makes this connection a worker's. @throws std::invalid_argument as work_on_queue()
@@ -62,7 +65,7 @@ class StudyQueue {
   /// Stores results; a point that has one keeps it.
   /// @throws std::runtime_error if that one differs (two that are stored at the same moment are not compared), or if
   /// the study was removed; std::invalid_argument if its points are by now measured with mathematical functions that
-  /// round differently from this machine's
+  /// round differently
   void finish(const std::vector<MeasuredPoint>& measured);
   /// Counts a failure of a point of this worker, adds the machine and `log` to the point's log, and gives the point
   /// back.
@@ -96,11 +99,13 @@ class StudyQueue {
   void tell_back(const std::string& told) const;
   void wait_for_server(int tries) const;
   void find_study(Session& session, const JournalHeader& header);
-  void claim_libm(Session& session);
+  void claim_libm(Session& session, bool of_journal);
 
   QueueServer server_;
   std::string connection_;
   std::unique_ptr<Session> session_;
+  std::string libm_;            ///< of what finish() stores
+  std::string collected_libm_;  ///< of what collect() added
   std::string worker_host_;
   std::string worker_place_;
   long long study_ = 0;

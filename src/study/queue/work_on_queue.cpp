@@ -210,6 +210,7 @@ class Worker {
   }
 
   void fail(int index, const std::string& why) {
+    files_.refuse_changed();  // it may be why: no failure of the point
     ++work_.failed;
     const std::string line = why.substr(0, why.find('\n'));
     if (server_.tell)
@@ -287,7 +288,8 @@ QueueWork work_on_queue(const Study& study, const StudyCheck& check, const Trial
     return {};
   }
   std::signal(SIGCHLD, SIG_DFL);  // one that ignores it hides how the processes of points ended
-  Worker worker(queue, study, inputs.files, trial, server, options, jobs);
+  const TrialFunction checked = checked_trial(trial, inputs.files);
+  Worker worker(queue, study, inputs.files, checked, server, options, jobs);
   try {
     worker.run();
   } catch (const QueueStopped&) {  // while the server is away

@@ -12,7 +12,8 @@
 namespace phalanx {
 namespace {
 
-constexpr std::size_t kMostSlices = 12;  // heat maps of a quantity
+constexpr std::size_t kMostSlices = 12;      // heat maps of a quantity
+constexpr std::size_t kMostCells = 200'000;  // of all maps of a page, about 15 MB
 constexpr std::size_t kMostBars = 60;
 constexpr std::size_t kMostBands = 3;         // more bands hide each other
 constexpr std::size_t kColumnsOfHalfMap = 7;  // up to here two maps fit beside each other
@@ -133,12 +134,20 @@ void add_heat_maps(HtmlPage& page, const StudyView& view, const Plane& plane) {
   std::vector<Slice> slices = view.slices({plane.columns, plane.rows});
   const std::size_t all = slices.size();
   page.heading(fmt::format("Over {} and {}", at(view, plane.columns).label, at(view, plane.rows).label));
-  if (all > kMostSlices) {
-    slices.resize(kMostSlices);
+  const std::size_t columns = at(view, plane.columns).names.size();
+  const std::size_t rows = at(view, plane.rows).names.size();
+  const std::size_t drawn = std::min(kMostSlices, kMostCells / (columns * rows * view.quantities().size()));
+  if (drawn == 0) {
+    page.paragraph(fmt::format(
+        "Maps of {} by {} cells would be too large for a page; study.csv has the numbers.", columns, rows));
+    return;
+  }
+  if (all > drawn) {
+    slices.resize(drawn);
     page.paragraph(
         fmt::format("Maps of {} of {} combinations of the other settings are drawn; {} are left out here and "
                     "stand in the table only.",
-                    kMostSlices, all, all - kMostSlices));
+                    drawn, all, all - drawn));
   }
   std::vector<std::string> of_one_slice;
   for (const Quantity& quantity : view.quantities()) {

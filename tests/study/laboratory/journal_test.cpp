@@ -130,6 +130,25 @@ TEST(Journal, RefusesAnotherStudyInWordsAndKeepsItsPoints) {
   EXPECT_TRUE(restarted.finished().empty());
 }
 
+TEST(Journal, RefusesPointsOfAMachineThatRoundsDifferently) {
+  const TemporaryFolder folder;
+  const auto file = folder / "points.jsonl";
+  JournalHeader here = header();
+  here.libm = "1111";
+  JournalHeader other = header();
+  other.libm = "2222";
+  EXPECT_NO_THROW(Journal(file, here, false));
+  EXPECT_NO_THROW(Journal(file, other, false).append(point(0))) << "nothing was measured before";
+  const std::string before = read_file(file);
+  EXPECT_EQ(read_journal(file).header.libm, "2222");
+  expect_refusal([&] { const Journal journal(file, here, false); },
+                 {"rounds differently", "--restart", "1 finished points", "--out"});
+  EXPECT_EQ(read_file(file), before);
+  const Journal collecting(file, header(), false);  // measures nothing
+  EXPECT_EQ(collecting.libm(), "2222");
+  EXPECT_EQ(read_file(file), before);
+}
+
 TEST(Journal, RefusesWhatIsNoJournalAndLeavesItAlone) {
   const TemporaryFolder folder;
   for (const char* text :

@@ -7,6 +7,7 @@
 #include <sys/resource.h>
 
 #include <atomic>
+#include <fstream>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -16,6 +17,7 @@
 #include "phalanx/record/output_file.h"
 #include "phalanx/study/laboratory/outputs.h"
 #include "record/temporary_folder.h"
+#include "study/laboratory/checked_inputs.h"
 #include "study/laboratory/expect_refusal.h"
 #include "study/laboratory/journal.h"
 #include "study/laboratory/study_json.h"
@@ -274,6 +276,52 @@ TEST(RunStudy, EndsIfAFileOfItsInputsChangesAndGoesOnOnceThatIsRestored) {
   }
 }
 
+// What the points of a study read, and what was compared, must be one state of each file.
+TEST(CheckStudy, RefusesAFileThatChangesMeanwhile) {
+  const TemporaryFolder folder;
+  const auto file = folder / "device.toml";
+  struct Change {
+    int call;  // after which the file is written: 1 to 12 read it for a point, 13 for the first one once more
+    std::string content;
+  };
+  for (const Change& change :
+       {Change{2, "mass = 10\n"}, Change{13, "mass = 10\n"}, Change{13, "mass = 1\n"}}) {
+    write_text_file(file, "mass = 1\n");
+    int calls = 0;
+    const auto check = [&](const Overrides&) {
+      StudyInputs inputs{.text = read_file(file), .files = {}, .read = {file}};
+      if (++calls == change.call) write_text_file(file, change.content);
+      return inputs;
+    };
+    try {
+      static_cast<void>(check_study(twelve_points(), check, 1));
+      ADD_FAILURE() << change.call << " " << change.content;
+    } catch (const std::runtime_error& error) {
+      EXPECT_THAT(error.what(), ::testing::AllOf(HasSubstr("device.toml"), HasSubstr("while the points")));
+    }
+    EXPECT_EQ(calls, 13);
+  }
+}
+
+TEST(CheckedTrial, EndsATrialDuringWhichAnotherFileStoodInThePlaceOfOne) {
+  const TemporaryFolder folder;
+  const auto file = folder / "device.toml";
+  const auto aside = folder / "aside.toml";
+  write_text_file(file, "mass = 1\n");
+  InputFiles files;
+  EXPECT_TRUE(files.add(file));
+  EXPECT_FALSE(files.add(file));
+  const TrialFunction trial = synthetic_trial;
+  const TrialFunction checked = checked_trial(trial, files);
+  EXPECT_NO_THROW(static_cast<void>(checked({}, 300.0, 3.0, 1)));
+  std::filesystem::rename(file, aside);
+  EXPECT_THROW(static_cast<void>(checked({}, 300.0, 3.0, 1)), std::runtime_error);
+  write_text_file(file, "mass = 1\n");  // of the same size, at another place on the disk
+  EXPECT_THROW(static_cast<void>(checked({}, 300.0, 3.0, 1)), std::runtime_error);
+  std::filesystem::rename(aside, file);
+  EXPECT_NO_THROW(static_cast<void>(checked({}, 300.0, 3.0, 1))) << "as it was";
+}
+
 // A build with changes is not told from another one by its commit alone.
 TEST(RunStudy, NamesTheProgramWithItsFingerprintWhereTheCommitDoesNotSayAll) {
   const std::string commit = built_from_commit();
@@ -384,6 +432,25 @@ TEST_F(Shards, OfAnotherStudyAreRefused) {
   EXPECT_THROW(static_cast<void>(merge_studies({folder / "nothing"}, folder / "all")), std::invalid_argument);
 }
 
+TEST_F(Shards, OfMachinesThatRoundDifferentlyAreRefused) {
+  run(1, "a");
+  run(2, "b");
+  run(3, "c");
+  const auto file = folder / "b/points.2-of-3.jsonl";
+  JournalContent other = read_journal(file);
+  EXPECT_EQ(other.header.libm, read_journal(folder / "a/points.1-of-3.jsonl").header.libm);
+  other.header.libm = "other";
+  replace_journal(file, other);
+  expect_refusal(
+      [&] { static_cast<void>(merge_studies({folder / "a", folder / "b", folder / "c"}, folder / "all")); },
+      {"points.2-of-3.jsonl", "rounds differently"});
+  other.points.clear();
+  replace_journal(file, other);
+  expect_refusal(
+      [&] { static_cast<void>(merge_studies({folder / "a", folder / "b", folder / "c"}, folder / "all")); },
+      {"4 of 12 points are missing"});
+}
+
 TEST_F(Shards, MustAgreeWhereTheyOverlap) {
   run(1, "a");
   static_cast<void>(run_study(twelve_points(), no_inputs, synthetic_trial, folder / "b", options_for(2)));
@@ -441,7 +508,9 @@ TEST(StudyOutputs, SummariseWithEveryCheckedStiffness) {
   const auto results = run_study(twelve_points(), no_inputs, synthetic_trial, folder.path(), options_for(2));
   write_study_outputs(folder.path(), twelve_points(), results,
                       {.commit = "test", .cpu = "", .compiler = "", .build_type = "", .date = ""});
-  const auto summary = nlohmann::json::parse(read_file(folder / "summary.json"));
+  const std::string text = read_file(folder / "summary.json");
+  EXPECT_EQ(text, nlohmann::ordered_json::parse(text).dump(2) + "\n");
+  const auto summary = nlohmann::json::parse(text);
   EXPECT_EQ(summary["made"]["commit"], "test");
   EXPECT_EQ(summary["study"]["seeds"], 5);
   ASSERT_EQ(summary["points"].size(), 12U);

@@ -408,6 +408,43 @@ TEST_F(StudyQueueTest, AJournalOfAnotherMachineDoesNotEnter) {
   EXPECT_EQ(read_file(folder_ / "points.jsonl"), read_file(alone_ / "points.jsonl"));
 }
 
+TEST_F(StudyQueueTest, AChangedFileIsNoFailureOfItsPoints) {
+  const auto file = folder_ / "device.toml";
+  std::ofstream(file) << "mass = 1\n";
+  const auto check = [&](const Overrides&) {
+    return StudyInputs{.text = "mass 1", .files = {}, .read = {file}};
+  };
+  StudyQueue(address()).create({.study = study_, .inputs = check_study(study_, check), .commit = "test"},
+                               kLongLease, false);
+  const auto gone = [&](const Overrides&, double, double, std::uint64_t) -> TrialResult {
+    std::filesystem::remove(file);
+    throw std::runtime_error("device.toml: cannot be opened");
+  };
+  const QueueWorkOptions options{.commit = "test", .jobs = 2, .finished = {}};
+  EXPECT_THROW(static_cast<void>(work_on_queue(study_, check, gone, address(), options)), std::runtime_error);
+  EXPECT_EQ(number("SELECT sum(failures) FROM phalanx.points"), 0);
+  EXPECT_EQ(number("SELECT count(*) FROM phalanx.points WHERE worker IS NOT NULL"), 0) << "given back";
+}
+
+TEST_F(StudyQueueTest, AJournalKeepsTheMathematicalFunctionsOfItsWorkers) {
+  create();
+  sql("UPDATE phalanx.studies SET libm = 'other'");
+  std::string line = result_line(alone()[3]);
+  line.pop_back();
+  sql("UPDATE phalanx.points SET failures = 3 WHERE point <> 3");
+  sql("UPDATE phalanx.points SET finished_at = now(), result = '" + line + "' WHERE point = 3");
+  EXPECT_EQ(run().results.size(), 1U);
+  EXPECT_EQ(read_journal(folder_ / "points.jsonl").header.libm, "other");
+  sql("DELETE FROM phalanx.studies");
+  QueueRunOptions options{.commit = "test"};
+  options.progress = [](const StudyProgress&) { sql("UPDATE phalanx.points SET failures = 3"); };
+  EXPECT_EQ(run(options).results.size(), 1U);
+  EXPECT_EQ(number("SELECT count(*) FROM phalanx.studies WHERE libm = 'other'"), 1) << "that of the journal";
+  EXPECT_EQ(read_journal(folder_ / "points.jsonl").header.libm, "other");
+  testing::expect_refusal([&] { StudyQueue(address()).join(header(), 1); },
+                          {"this machine's", "differently"});
+}
+
 TEST_F(StudyQueueTest, ALeaseKeepsAPointUntilItEndsOrIsGivenBack) {
   create();
   StudyQueue one(address());

@@ -368,6 +368,24 @@ TEST(StudyReport, OfManyPointsListsTheFirstFiveThousand) {
   EXPECT_THAT(page, Not(HasSubstr("5000</td>")));
 }
 
+TEST(StudyReport, HasNoMapOfMoreCellsThanAPageCarries) {
+  std::vector<double> many;
+  for (int i = 0; i < 300; ++i) many.push_back(i);
+  const std::vector<PointResult> none;
+  const Study square = synthetic_study({}, {numbers("a.b", "a.b", many), numbers("c.d", "c.d", many)});
+  const std::string page = study_report_html(square, none, kMadeUp);
+  EXPECT_EQ(flaw_of(page), "");
+  EXPECT_THAT(page, HasSubstr("Maps of 300 by 300 cells would be too large"));
+  EXPECT_LT(page.size(), 4'000'000U);
+  many.resize(100);
+  const Study cube = synthetic_study({}, {numbers("a.b", "a.b", many), numbers("c.d", "c.d", many),
+                                          numbers("e.f", "e.f", {1.0, 2.0, 3.0, 4.0})});
+  const std::string some = study_report_html(cube, none, kMadeUp);
+  EXPECT_EQ(flaw_of(some), "");
+  EXPECT_THAT(some, ::testing::ContainsRegex("Maps of [1-3] of 4 combinations"));
+  EXPECT_LT(some.size(), 20'000'000U);
+}
+
 TEST(StudyReport, RefusesAResultOfNoPoint) {
   const Study study = synthetic_study({"a", "b"}, {});
   std::vector<PointResult> results = synthetic_results(study);
