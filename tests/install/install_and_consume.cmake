@@ -54,9 +54,11 @@ must(${CC} -c -I${WORK_DIR}/prefix/include ${WORK_DIR}/prefix/share/phalanx/link
 
 # An Arduino library of the installed files.
 must(bash ${WORK_DIR}/prefix/share/doc/phalanx/examples/arduino/make_library ${WORK_DIR}/arduino)
-if(NOT EXISTS ${WORK_DIR}/arduino/src/phalanx_link.c OR NOT EXISTS ${WORK_DIR}/arduino/src/phalanx/device/link/phalanx_link.h)
-  message(FATAL_ERROR "examples/arduino/make_library made no library of the installed files")
-endif()
+foreach(expected phalanx_link.c PhalanxLink.h phalanx/device/link/phalanx_link.h)
+  if(NOT EXISTS ${WORK_DIR}/arduino/src/${expected})
+    message(FATAL_ERROR "examples/arduino/make_library did not make src/${expected} of the installed files")
+  endif()
+endforeach()
 
 # All that the page names is there.
 file(READ ${WORK_DIR}/prefix/share/phalanx/web/index.html page)

@@ -3,7 +3,7 @@
 // README.md beside it states how to compile it, and for which boards. setup() and loop() never wait.
 #include <Arduino.h>
 
-#include <phalanx/device/link/phalanx_link.h>
+#include <PhalanxLink.h>
 
 // ---- the device: change these numbers to those of yours ----
 
@@ -12,7 +12,7 @@ const uint8_t kLinkJoint[kJoints] = {4, 6};  // index_mcp_flexion, index_pip_fle
 const uint8_t kSensorPin[kJoints] = {A0, A1};
 const uint8_t kMotorPin[kJoints] = {5, 6};      // pulse width: torque
 const uint8_t kDirectionPin[kJoints] = {4, 7};  // high: flexion
-const uint8_t kStopPin = 2;                     // low: the emergency stop is pressed
+const uint8_t kStopPin = 2;                     // normally closed, to ground; high: pressed, or a broken wire
 const uint16_t kRate = 500;                     // of samples and control [Hz]
 const uint32_t kPeriod = 1000000UL / kRate;     // [us]
 const float kTorqueOfFullWidth = 0.2f;          // of the motor at the joint [Nm]
@@ -95,7 +95,7 @@ void drive(uint8_t i, float torque) {
 void tick(uint64_t now) {
   int32_t raw[PHX_CHANNELS] = {0};
   for (uint8_t i = 0; i < kJoints; ++i) raw[i] = analogRead(kSensorPin[i]);
-  const bool stopped = digitalRead(kStopPin) == LOW;
+  const bool stopped = digitalRead(kStopPin) == HIGH;
   phx_controller_tick(&controller, now, raw, stopped, false, &output);
   for (uint8_t i = 0; i < kJoints; ++i) drive(i, output.torque[kLinkJoint[i]]);
   // A sample for which the port has no room is left out. The host sees the gap in the numbers.

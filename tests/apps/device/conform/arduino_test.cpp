@@ -28,9 +28,9 @@ struct ArduinoBoard {
   std::deque<std::uint8_t> from_sketch;
   std::size_t in_buffer = 0;  ///< of the core, to send
   std::array<int, 32> width{};
-  bool stop_pressed = false;
-  int bits = 10;         ///< of the converter, until the sketch asks for more
-  double sensor = 0.49;  ///< of the potentiometers, as a part of the supply
+  bool stop_open = false;  ///< contact of the emergency stop, normally closed, or its wire
+  int bits = 10;           ///< of the converter, until the sketch asks for more
+  double sensor = 0.49;    ///< of the potentiometers, as a part of the supply
 };
 ArduinoBoard arduino;
 
@@ -44,7 +44,7 @@ int analogRead(std::uint8_t pin) {
 }
 void analogReadResolution(int bits) { arduino.bits = bits; }
 void analogWrite(std::uint8_t pin, int value) { arduino.width[pin] = value; }
-int digitalRead(std::uint8_t) { return arduino.stop_pressed ? LOW : HIGH; }
+int digitalRead(std::uint8_t) { return arduino.stop_open ? HIGH : LOW; }
 void digitalWrite(std::uint8_t, std::uint8_t) {}
 void pinMode(std::uint8_t, std::uint8_t) {}
 void ArduinoSerial::begin(unsigned long) {}
@@ -164,6 +164,21 @@ TEST(ArduinoExample, ASensorAtARailIsAFault) {
     EXPECT_EQ(controller.fault_channel, 0);
     EXPECT_EQ(arduino.width[5], 0);
   }
+}
+
+// The pull-up makes the pin high as soon as the contact or its wire is open.
+TEST(ArduinoExample, AnOpenEmergencyStopIsAFault) {
+  arduino = {};
+  setup();
+  SketchPort port;
+  open_session(port);
+  run_sketch(port, 0.05);
+  EXPECT_TRUE(controller.session);
+  EXPECT_EQ(controller.fault, PHX_FAULT_NONE);
+  arduino.stop_open = true;
+  run_sketch(port, 0.05);
+  EXPECT_EQ(controller.fault, PHX_FAULT_EMERGENCY_STOP);
+  EXPECT_EQ(arduino.width[5], 0);
 }
 
 }  // namespace

@@ -8,6 +8,9 @@ shift 5
 rm -rf "$work"
 mkdir -p "$work"
 "$source/examples/arduino/make_library" "$work/PhalanxLink" > /dev/null
+# The IDE finds a library by a header in its src/, not below that.
+grep -qx 'includes=PhalanxLink.h' "$work/PhalanxLink/library.properties"
+test -e "$work/PhalanxLink/src/PhalanxLink.h"
 warnings=(-Wall -Wextra -Werror)
 "$cc" "$@" -std=gnu11 -Os "${warnings[@]}" -I"$work/PhalanxLink/src" -c "$work/PhalanxLink/src/phalanx_link.c" -o "$work/phalanx_link.o"
 "$cxx" "$@" -std=gnu++17 -Os -fno-exceptions "${warnings[@]}" -I"$work/PhalanxLink/src" -I"$source/tests/apps/device/conform/arduino" \
