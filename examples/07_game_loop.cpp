@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A game loop: the haptic thread steps 1,000 times a second, and the game draws 60 times a second. Poses and
 // forces cross through a Latest, where neither thread waits for the other. A game draws the hand at gdp_pose,
-// which never penetrates an object.
+// which never penetrates an object. Deadlines that have passed are left out and never made up: the rate of a
+// torque is bounded for each step, so that a burst of steps would exceed it.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -26,12 +27,15 @@ int main() {
   std::jthread haptics([&](const std::stop_token& stop) {
     HapticState state(model, parameters);
     Sample sample;
-    for (auto due = steady_clock::now(); !stop.stop_requested(); std::this_thread::sleep_until(due)) {
-      due += std::chrono::milliseconds(1);
-      sample.time_s += parameters.period();
+    const auto begin = steady_clock::now();
+    for (auto due = begin; !stop.stop_requested();) {
+      std::this_thread::sleep_until(due);
+      sample.time_s = std::chrono::duration<double>(steady_clock::now() - begin).count();
       if (angles.update()) sample.angle = angles.value();
       step(model, parameters, sample, state);
       snapshots.write(state.snapshot());  // a real loop sends state.snapshot().torque to the device here
+      due += std::chrono::milliseconds(1);
+      if (const auto now = steady_clock::now(); due < now) due = now + std::chrono::milliseconds(1);
     }
   });
 

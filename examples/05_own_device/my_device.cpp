@@ -7,7 +7,7 @@
 using namespace phalanx;
 
 namespace {
-constexpr double kGain = std::numbers::pi / 4096.0;  // half a turn over 12 bits [rad/count]
+constexpr double kGain = std::numbers::pi / 4096.0;  // [rad/count]; value = gain raw + offset
 class MyDevice final : public Device {
  public:
   MyDevice() {
@@ -15,10 +15,11 @@ class MyDevice final : public Device {
     info_.serial = "prototype-1";
     info_.rate_hz = 500.0;
     info_.renders_torque = false;
-    info_.watchdog = 0.020;  // its controller releases by itself 20 ms after the host's last message
-    for (const int joint : {joint_index(1, 0), joint_index(1, 2)})  // value = gain raw + offset
+    info_.actuated = false;  // no motors. With motors, state info_.watchdog only if the controller by itself
+                             // releases them when no command has come for that time
+    for (const int joint : {joint_index(1, 0), joint_index(1, 2)})  // counts beyond: open or shorted sensor
       info_.channels.push_back(
-          {.index = joint, .raw_min = 0, .raw_max = 4095, .gain = kGain, .offset = -1000.0 * kGain});
+          {.index = joint, .raw_min = 50, .raw_max = 4045, .gain = kGain, .offset = -1000.0 * kGain});
   }
   // Connect, and wait until info() is known. If no device answers, throw DeviceError with a remedy.
   void open() override { next_ = 0; }
@@ -34,14 +35,13 @@ class MyDevice final : public Device {
     for (; count < out.size() && next_ <= (now - start_) * info_.rate_hz; ++next_) out[count++] = sample(now);
     return count;
   }
-  // The newest command replaces all before it. Release the motors when none has come for 20 ms.
+  // The newest command replaces all before it. With motors: release them when none has come for 20 ms.
   void send(const DeviceCommand& command) noexcept override { enabled_ = command.enable && !command.fault; }
   void reset() noexcept override {}  // a person has examined the device and clears a fault
 
  private:
   [[nodiscard]] DeviceSample sample(double now) const noexcept {  // the finger closes and opens in 2 s
-    const double time = next_ / info_.rate_hz;
-    const double closed = 0.5 - 0.5 * std::cos(std::numbers::pi * time);
+    const double closed = 0.5 - 0.5 * std::cos(std::numbers::pi * next_ / info_.rate_hz);
     DeviceSample sample{.sequence = next_ + 1, .time_us = 1 + 2000ULL * next_, .received = now};
     sample.raw = {counts(0.9 * closed), counts(0.5 * closed)};
     sample.state = enabled_ ? DeviceState::kActive : DeviceState::kReady;
