@@ -344,8 +344,16 @@ namespace Phalanx
 
         internal void Read() { Marshal.Copy(Memory, word, 0, Words); }
 
-        public Status Status { get { return (Status)Marshal.ReadInt32(Memory, 4); } }
-        public long Tick { get { return Marshal.ReadInt64(Memory, 8); } }
+        public Status Status { get { return (Status)Int32At(4); } }
+        public long Tick
+        {
+            get
+            {
+                long tick = Marshal.ReadInt64(Memory, 8);
+                GC.KeepAlive(this); // its finalizer frees the memory
+                return tick;
+            }
+        }
         public double Time { get { return word[2]; } }
         /// <summary>Limited command on a joint of the finger [Nm].</summary>
         public double Torque(int joint) { return word[TorqueAt + Below(joint, 20)]; }
@@ -355,7 +363,7 @@ namespace Phalanx
         public double DigitForce(int digit, int axis) { return word[DigitForceAt + 3 * Below(digit, 5) + Below(axis, 3)]; }
         /// <summary>Middle of a shown digit's pad, axis 0 .. 2 [m].</summary>
         public double Fingertip(int digit, int axis) { return word[FingertipAt + 3 * Below(digit, 5) + Below(axis, 3)]; }
-        public bool Contact(int segment) { return Marshal.ReadInt32(Memory, 8 * (SegmentAt + SegmentWords * Below(segment, 16))) != 0; }
+        public bool Contact(int segment) { return Int32At(8 * (SegmentAt + SegmentWords * Below(segment, 16))) != 0; }
         public double Depth(int segment) { return Segment(segment, 2); }
         /// <summary>Magnitude of a segment's force [N].</summary>
         public double Force(int segment) { return Segment(segment, 4); }
@@ -377,7 +385,15 @@ namespace Phalanx
         public ulong Hash(ulong hash)
         {
             for (int i = 4; i < 8 * Words; ++i) hash = unchecked((hash ^ Marshal.ReadByte(Memory, i)) * 0x100000001b3UL);
+            GC.KeepAlive(this);
             return hash;
+        }
+
+        int Int32At(int offset)
+        {
+            int value = Marshal.ReadInt32(Memory, offset);
+            GC.KeepAlive(this); // its finalizer frees the memory
+            return value;
         }
 
         double Segment(int segment, int at) { return word[SegmentAt + SegmentWords * Below(segment, 16) + at]; }

@@ -195,11 +195,13 @@ typedef struct phalanx_model_info {
 typedef struct phalanx_model phalanx_model;
 
 /// Makes the model of a scene. It reads the files that the scene names. Where the scene has its grasp
-/// planned, it takes seconds, on all cores. Not real-time.
+/// planned, it takes seconds, on all cores. For each mesh file of the hand or of an object it forks the
+/// process, which costs a running loop some steps of 1 to 2 ms: make models before the loop starts. With
+/// hand.meshes = "capsules", and no object of kind "file", it does not fork. Not real-time.
 /// @returns PHALANX_ERROR_REFUSED for a file, mesh or size that cannot be used
 PHALANX_API phalanx_result phalanx_model_create(const phalanx_scene* scene, phalanx_model** model);
 
-/// Makes a model from arrays, without any file. The arrays are copied. Not real-time.
+/// Makes a model from arrays, without any file and without a fork. The arrays are copied. Not real-time.
 /// @param hand            null: the default of each member
 /// @param vertices        x, y, z of each vertex of the objects, in W [m]; may be null without vertices
 /// @param triangles       three indices of each triangle, counter-clockwise seen from outside
@@ -250,8 +252,8 @@ typedef struct phalanx_sample {
 /// Motion of the whole hand over time.
 typedef struct phalanx_motion phalanx_motion;
 
-/// Makes the motion of a scene: its file, or its script. As phalanx_model_create(), it may plan a grasp.
-/// Not real-time.
+/// Makes the motion of a scene: its file, or its script. As phalanx_model_create(), it may plan a grasp, and
+/// then reads the same mesh files. Not real-time.
 PHALANX_API phalanx_result phalanx_motion_create(const phalanx_scene* scene, phalanx_motion** motion);
 
 /// Reads the length of a simulation of the scene [s]. Real-time.
@@ -441,7 +443,8 @@ typedef struct phalanx_trial_result {
   char why_invalid[128];  ///< a few words; "" if valid
 } phalanx_trial_result;
 
-/// Runs one trial. Equal arguments give equal bits. It takes seconds. Not real-time.
+/// Runs one trial. Equal arguments give equal bits. It takes seconds, and reads mesh files as
+/// phalanx_model_create(). Not real-time.
 /// @returns PHALANX_ERROR_REFUSED if a number of `trial` is out of its range, no digit meets the object, or the
 /// scene, its device or its patient cannot be used
 PHALANX_API phalanx_result phalanx_trial_run(const phalanx_scene* scene, const phalanx_trial* trial,
@@ -511,8 +514,10 @@ typedef struct phalanx_recorded_step {
 
 /// Reads a recording: every step is made again and compared with the file (docs/recording.md). Not
 /// real-time.
-/// @param from_s, to_s  range of the steps that are kept, since the beginning; to_s is exclusive [s]
-/// @returns PHALANX_ERROR_FAILED if the file is not whole, is encrypted, or needs another version
+/// @param from_s, to_s  range of the steps that are kept, since the beginning; to_s is exclusive, and
+/// INFINITY means to the end [s]
+/// @returns PHALANX_ERROR_FAILED if the file is not whole, is encrypted, or needs another version;
+/// PHALANX_ERROR_REFUSED if from_s or to_s is NaN
 PHALANX_API phalanx_result phalanx_recording_open(const char* path, double from_s, double to_s,
                                                   phalanx_recording** recording);
 

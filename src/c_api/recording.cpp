@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <span>
 #include <string>
@@ -61,6 +62,8 @@ phalanx_result phalanx_recording_open(const char* path, double from_s, double to
                                       phalanx_recording** recording) {
   if (path == nullptr) return null_argument("path");
   if (recording == nullptr) return null_argument("recording");
+  if (std::isnan(from_s)) return failed(PHALANX_ERROR_REFUSED, "from_s = nan: must be a number of seconds");
+  if (std::isnan(to_s)) return failed(PHALANX_ERROR_REFUSED, "to_s = nan: must be a number of seconds");
   return guarded([&] {
     auto read = std::make_unique<Recording>();
     StepCollector collector(*read, from_s, to_s);

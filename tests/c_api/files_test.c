@@ -129,6 +129,10 @@ static void recordings(const char* folder) {
   CHECK(info.steps == 100 && info.compared == 300);
   GOOD(phalanx_recording_destroy(recording));
   FAILS(PHALANX_ERROR_FAILED, "", phalanx_recording_open("/no/such.mcap", 0.0, 1.0, &recording));
+  recording = NULL;
+  FAILS(PHALANX_ERROR_REFUSED, "from_s = nan: must be", phalanx_recording_open(path, kNan, 1.0, &recording));
+  FAILS(PHALANX_ERROR_REFUSED, "to_s = nan: must be", phalanx_recording_open(path, 0.0, kNan, &recording));
+  CHECK(recording == NULL);
 
   // Steps that are left out are stated, and are no difference.
   state = box_state(model);
