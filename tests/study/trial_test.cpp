@@ -94,6 +94,16 @@ TEST(Trial, IsNotJudgedWhileTheBumpLasts) {
 }
 
 // The scene says 0.9 N/mm, the patient 3 N.
+TEST(Trial, RefusesAStiffnessOrAPressOutOfRange) {
+  const auto setup = make_trial_setup(load_scene("stability_press"));
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double stiffness : {0.0, -1.0, infinity})
+    EXPECT_THROW(static_cast<void>(run_trial(*setup, stiffness, kAsItIs, 1)), std::invalid_argument)
+        << stiffness;
+  for (const double press : {-0.1, infinity})
+    EXPECT_THROW(static_cast<void>(run_trial(*setup, kAsItIs, press, 1)), std::invalid_argument) << press;
+}
+
 TEST(Trial, TakesTheScenesStiffnessAndThePatientsPressForNaN) {
   const auto setup = make_trial_setup(load_scene("stability_press"));
   const TrialResult as_it_is = run_trial(*setup, kAsItIs, kAsItIs, 2);

@@ -2,6 +2,7 @@
 #include "phalanx/simulation/closed_loop/trial.h"
 
 #include <cmath>
+#include <stdexcept>
 
 #include "phalanx/simulation/closed_loop/closed_loop.h"
 
@@ -9,6 +10,10 @@ namespace phalanx {
 
 TrialResult run_trial(const TrialSetup& setup, double stiffness, double press, std::uint64_t seed,
                       const TickObserver& observer) {
+  if (!std::isnan(stiffness) && !(stiffness > 0.0 && std::isfinite(stiffness)))
+    throw std::invalid_argument("stiffness: must be > 0 and finite [N/m]; NaN takes the scene's");
+  if (!std::isnan(press) && !(press >= 0.0 && std::isfinite(press)))
+    throw std::invalid_argument("press: must be >= 0 and finite [N]; NaN takes the patient's");
   HapticParameters parameters = setup.parameters;
   if (!std::isnan(stiffness)) parameters.force.stiffness = stiffness;
   const double force = std::isnan(press) ? setup.patient.press : press;
