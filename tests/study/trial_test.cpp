@@ -93,7 +93,6 @@ TEST(Trial, IsNotJudgedWhileTheBumpLasts) {
   EXPECT_EQ(set_up("0", "501")->patient.bump, 0.0) << "there is none";
 }
 
-// The scene says 0.9 N/mm, the patient 3 N.
 TEST(Trial, RefusesAStiffnessOrAPressOutOfRange) {
   const auto setup = make_trial_setup(load_scene("stability_press"));
   const double infinity = std::numeric_limits<double>::infinity();
@@ -104,6 +103,7 @@ TEST(Trial, RefusesAStiffnessOrAPressOutOfRange) {
     EXPECT_THROW(static_cast<void>(run_trial(*setup, kAsItIs, press, 1)), std::invalid_argument) << press;
 }
 
+// The scene says 0.9 N/mm, the patient 3 N.
 TEST(Trial, TakesTheScenesStiffnessAndThePatientsPressForNaN) {
   const auto setup = make_trial_setup(load_scene("stability_press"));
   const TrialResult as_it_is = run_trial(*setup, kAsItIs, kAsItIs, 2);

@@ -66,8 +66,8 @@ struct QueuedResults {
 
 /// Puts a study into the queue, if it is not there, and collects results until every point is finished or
 /// quarantined, or `stopped`. Points of a journal in `out` enter the queue as finished; they must have been measured
-/// on a machine whose mathematical functions round as this one's. At the end the journal
-/// out/points.jsonl holds all results, by index. Not real-time.
+/// with mathematical functions that round as those of the workers. At the end the journal out/points.jsonl holds all
+/// results, by index. Not real-time.
 /// @throws SceneError, std::invalid_argument as run_study(); std::invalid_argument also for an address or a lease
 /// that is refused, and if journal and queue have different results of a point, or of machines whose mathematical
 /// functions round differently

@@ -103,7 +103,7 @@ const std::filesystem::path* InputFiles::changed() const {
 
 void InputFiles::refuse_changed() const {
   if (const std::filesystem::path* file = changed())
-    throw std::runtime_error(fmt::format(
+    throw InputsChanged(fmt::format(
         "{}: was changed or removed while the study ran, so that points may have been measured with "
         "either content; those that were finished before are kept. Restore the file and type the "
         "same command again, or measure all with the new content (--restart)",
@@ -112,7 +112,13 @@ void InputFiles::refuse_changed() const {
 
 TrialFunction checked_trial(const TrialFunction& trial, const InputFiles& files) {
   return [&trial, &files](const Overrides& overrides, double stiffness, double press, std::uint64_t seed) {
-    TrialResult result = trial(overrides, stiffness, press, seed);
+    TrialResult result;
+    try {
+      result = trial(overrides, stiffness, press, seed);
+    } catch (...) {
+      files.refuse_changed();
+      throw;
+    }
     files.refuse_changed();
     return result;
   };
@@ -149,7 +155,12 @@ CheckedInputs check_inputs(const Study& study, const StudyCheck& check, int jobs
       // It was read before its state was: what is read since must be the same.
       if (!first_new.empty()) {
         const StudyPoint point = study_point(study, begin + static_cast<int>(i));
-        const StudyInputs again = check(point_overrides(study, point));
+        StudyInputs again;
+        try {
+          again = check(point_overrides(study, point));
+        } catch (const std::invalid_argument&) {  // it was valid a moment ago
+          refuse_changing(first_new);
+        }
         if (again.text != input.text || again.read != input.read || again.files != input.files)
           refuse_changing(first_new);
       }

@@ -6,11 +6,17 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <stdexcept>
 #include <string>
 
 #include "phalanx/study/laboratory/run_study.h"
 
 namespace phalanx {
+
+/// A file of a study's inputs was changed or removed while the study ran.
+struct InputsChanged : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 /// Files as they were when they were added: device, inode, size and time of the last change of content. A file that was
 /// written again with its old content has another time. One that was moved away and back has not: checked_trial()
@@ -21,7 +27,7 @@ class InputFiles {
   bool add(const std::filesystem::path& file);
   /// @returns the first file that is not as it was, or is gone; null if there is none. Several threads may call it.
   [[nodiscard]] const std::filesystem::path* changed() const;
-  /// @throws std::runtime_error naming changed(). Several threads may call it.
+  /// @throws InputsChanged naming changed(). Several threads may call it.
   void refuse_changed() const;
 
  private:
@@ -48,7 +54,8 @@ struct CheckedInputs {
 /// @throws std::runtime_error naming a file that changes meanwhile
 [[nodiscard]] CheckedInputs check_inputs(const Study& study, const StudyCheck& check, int jobs);
 
-/// @returns `trial`, and after each trial InputFiles::refuse_changed(). Both arguments must outlive it.
+/// @returns `trial`, and after each trial InputFiles::refuse_changed(), also if it throws. Both arguments must outlive
+/// it. After an InputsChanged `trial` must not be called again: it may have kept what it read from another file.
 [[nodiscard]] TrialFunction checked_trial(const TrialFunction& trial, const InputFiles& files);
 
 }  // namespace phalanx

@@ -67,7 +67,10 @@ class Union {
       throw std::invalid_argument(fmt::format("{} does not fit {}: {}; merge only parts of one study",
                                               file.string(), first_.string(), problem));
     }
-    if (header_->libm.empty()) header_->libm = content.header.libm;
+    if (header_->libm.empty() && !content.header.libm.empty()) {
+      header_->libm = content.header.libm;
+      first_ = file;
+    }
     for (const PointResult& result : content.points) add(result, file);
   }
 

@@ -117,8 +117,9 @@ void measure_points(const std::vector<int>& points, const Study& study, const Tr
     PointResult result;
     try {
       result = measure_point(study, index, checked);
+    } catch (const InputsChanged&) {
+      throw;  // ends the run: the trials may have kept what they read from another file
     } catch (const std::exception& error) {
-      files.refuse_changed();  // ends the run: every further point would fail
       failures.add(index, error_text(error));
       return;
     } catch (...) {

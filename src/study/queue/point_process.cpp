@@ -22,6 +22,7 @@
 #include <utility>
 
 #include "phalanx/core/error_text.h"
+#include "study/laboratory/checked_inputs.h"
 #include "study/laboratory/journal.h"
 #include "study/laboratory/measure_point.h"
 
@@ -49,7 +50,8 @@ bool read_request(int descriptor, int& index) {
   }
 }
 
-/// The form of an answer: "INDEX SECONDS r RESULT", or "INDEX SECONDS f REASON", and a line's end.
+/// The form of an answer: "INDEX SECONDS r RESULT", or "INDEX SECONDS f REASON", and a line's end; c instead of f if a
+/// file of the inputs was changed.
 std::string answer_of(const Study& study, int index, const TrialFunction& trial) {
   const auto begin = std::chrono::steady_clock::now();
   char kind = 'r';
@@ -57,6 +59,9 @@ std::string answer_of(const Study& study, int index, const TrialFunction& trial)
   try {
     text = result_line(measure_point(study, index, trial));
     text.pop_back();
+  } catch (const InputsChanged& error) {
+    kind = 'c';
+    text = error.what();
   } catch (const std::exception& error) {
     kind = 'f';
     text = error_text(error);
@@ -76,7 +81,8 @@ PointAnswer parsed(const std::string& line) {
   char* rest = nullptr;
   answer.index = static_cast<int>(std::strtol(line.c_str(), &rest, 10));
   answer.seconds = std::strtod(rest, &rest);
-  answer.failed = rest[1] == 'f';
+  answer.failed = rest[1] != 'r';
+  answer.inputs_changed = rest[1] == 'c';
   answer.text = rest + 3;
   return answer;
 }

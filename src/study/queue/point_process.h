@@ -18,7 +18,8 @@ struct PointAnswer {
   int index = 0;
   double seconds = 0.0;  ///< time that it took [s]
   bool failed = false;
-  std::string text;  ///< result_line() without its end, or the reason
+  bool inputs_changed = false;  ///< why it failed (InputsChanged): the process must measure no further point
+  std::string text;             ///< result_line() without its end, or the reason
 };
 
 /// A forked process that measures points, one after the other, on one thread. If a trial crashes, that process ends

@@ -151,7 +151,11 @@ class Watch {
 QueuedResults run_on_queue(const Study& study, const StudyCheck& check, const std::filesystem::path& out,
                            const QueueServer& server, const QueueRunOptions& options) {
   StudyQueue queue(server);  // first: an address or tables that are refused must not change a file
-  queue.prepare(options.lease_s);
+  try {
+    queue.prepare(options.lease_s);
+  } catch (const QueueStopped&) {
+    throw std::runtime_error("stopped while the server is away; nothing was begun");
+  }
   JournalHeader header{.study = study, .inputs = check_study(study, check), .commit = options.commit};
   prepare_output_folder(out);
   const auto file = out / journal_name(1, 1);
@@ -162,15 +166,16 @@ QueuedResults run_on_queue(const Study& study, const StudyCheck& check, const st
   QueuedResults queued;
   std::exception_ptr failure;
   bool begun = !options.restart;
+  bool taken_up = false;  // the queue has the journal's points
   try {
     queue.create(header, options.lease_s, options.restart);
     if (options.restart) journal.begin(header, true);  // not before: the server may refuse to begin again
     begun = true;
     Results stored;
     queue.collect(stored);
-    const std::vector<MeasuredPoint> missing = missing_of(journal.finished(), stored);
-    results.merge(stored);
-    store(queue, missing, journal.libm());
+    store(queue, missing_of(journal.finished(), stored), journal.libm());
+    taken_up = true;
+    results.merge(stored);  // not before: points that the queue refuses must not be mixed with its own
     if (options.retry) queue.retry_quarantined();
     remove_study_outputs(out);
     Watch watch(queue, study, server, options);
@@ -181,13 +186,13 @@ QueuedResults run_on_queue(const Study& study, const StudyCheck& check, const st
   } catch (const QueueStopped&) {  // while the server is away
     if (!begun)
       throw std::runtime_error(
-          "stopped while the server is away, before the study was begun again; what the journal has is kept. "
-          "Type "
-          "the same command again");
+          "stopped while the server is away: it may have begun the study again or not, what the journal has "
+          "is "
+          "kept. Type the same command again");
   } catch (...) {
     failure = std::current_exception();
   }
-  header.libm = queue.collected_libm().empty() ? journal.libm() : queue.collected_libm();
+  header.libm = taken_up && !queue.collected_libm().empty() ? queue.collected_libm() : journal.libm();
   queued.results = in_order(results);
   queued.whole = static_cast<int>(results.size()) == point_count(study);
   try {

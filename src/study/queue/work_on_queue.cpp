@@ -181,6 +181,7 @@ class Worker {
         measured_.push_back(measured(answer));
       }
       for (const PointAnswer& answer : answers) {  // last: this may throw
+        if (answer.inputs_changed) throw std::runtime_error(answer.text);
         if (answer.failed) {
           fail(answer.index, answer.text);
         } else {

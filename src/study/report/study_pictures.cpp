@@ -77,8 +77,8 @@ void add_curves(HtmlPage& page, const StudyView& view, int axis) {
   const std::vector<Slice> slices = view.slices({axis});
   page.heading(fmt::format("Over {}", at(view, axis).label));
   if (slices.size() > kMostSeries) {
-    page.paragraph(fmt::format("{} curves would be too many to tell apart; the maps and the table have them.",
-                               slices.size()));
+    page.paragraph(
+        fmt::format("{} curves would be too many to tell apart; study.csv has the numbers.", slices.size()));
     return;
   }
   page.figures(
@@ -145,8 +145,8 @@ void add_heat_maps(HtmlPage& page, const StudyView& view, const Plane& plane) {
   if (all > drawn) {
     slices.resize(drawn);
     page.paragraph(
-        fmt::format("Maps of {} of {} combinations of the other settings are drawn; {} are left out here and "
-                    "stand in the table only.",
+        fmt::format("Maps of {} of {} combinations of the other settings are drawn; {} are left out here; "
+                    "study.csv has their numbers.",
                     drawn, all, all - drawn));
   }
   std::vector<std::string> of_one_slice;

@@ -301,6 +301,12 @@ TEST(CheckStudy, RefusesAFileThatChangesMeanwhile) {
     }
     EXPECT_EQ(calls, 13);
   }
+  int calls = 0;
+  const auto broken = [&](const Overrides&) -> StudyInputs {
+    if (++calls == 13) throw std::invalid_argument("device.toml: is no TOML");
+    return {.text = "mass 1", .files = {}, .read = {file}};
+  };
+  EXPECT_THROW(static_cast<void>(check_study(twelve_points(), broken, 1)), std::runtime_error);
 }
 
 TEST(CheckedTrial, EndsATrialDuringWhichAnotherFileStoodInThePlaceOfOne) {

@@ -18,6 +18,7 @@
 #include "phalanx/study/laboratory/outputs.h"
 #include "phalanx/study/laboratory/study_file.h"
 #include "phalanx/study/queue.h"
+#include "study/laboratory/checked_inputs.h"
 #include "study/laboratory/expect_refusal.h"
 #include "study/laboratory/synthetic.h"
 #include "study/queue/pace.h"
@@ -406,6 +407,35 @@ TEST_F(StudyQueueTest, AJournalOfAnotherMachineDoesNotEnter) {
   testing::expect_refusal([&] { static_cast<void>(run()); }, {"rounds differently"});
   EXPECT_EQ(number("SELECT count(*) FROM phalanx.points WHERE result IS NOT NULL"), 0);
   EXPECT_EQ(read_file(folder_ / "points.jsonl"), read_file(alone_ / "points.jsonl"));
+}
+
+TEST_F(StudyQueueTest, AJournalThatIsRefusedIsNotMixedWithTheQueuesResults) {
+  create();
+  const auto points = alone();
+  std::string line = result_line(points[3]);
+  line.pop_back();
+  sql("UPDATE phalanx.studies SET libm = 'other'");
+  sql("UPDATE phalanx.points SET finished_at = now(), result = '" + line + "' WHERE point = 3");
+  const JournalContent whole = read_journal(alone_ / "points.jsonl");
+  const auto journal = folder_ / "points.jsonl";
+  replace_journal(journal, {.header = whole.header, .points = {whole.points[0], whole.points[1]}});
+  const std::string before = read_file(journal);
+  for (int call = 0; call < 2; ++call) {
+    testing::expect_refusal([&] { static_cast<void>(run()); }, {"the points of the journal", "differently"});
+    EXPECT_EQ(read_file(journal), before);
+  }
+  EXPECT_EQ(number("SELECT count(*) FROM phalanx.points WHERE result IS NOT NULL"), 1);
+}
+
+// The process that measured it may have kept what it read from the other file: it must measure nothing more.
+TEST_F(StudyQueueTest, AWorkerEndsThoughTheFileIsBackWhenItLooks) {
+  create();
+  const auto saw_another_file = [](const Overrides&, double, double, std::uint64_t) -> TrialResult {
+    throw InputsChanged("device.toml: was changed");
+  };
+  EXPECT_THROW(static_cast<void>(work(saw_another_file)), std::runtime_error);
+  EXPECT_EQ(number("SELECT sum(failures) FROM phalanx.points"), 0);
+  EXPECT_EQ(number("SELECT count(*) FROM phalanx.points WHERE worker IS NOT NULL"), 0) << "given back";
 }
 
 TEST_F(StudyQueueTest, AChangedFileIsNoFailureOfItsPoints) {

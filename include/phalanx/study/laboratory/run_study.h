@@ -65,7 +65,7 @@ struct StudyOptions {
 /// Checks every point. @returns the fingerprint of all inputs
 /// @param jobs  most threads that call `check`, at most one a core; 0: one a core. They have ended when this returns.
 /// @throws what `check` throws for the first point for which it throws: SceneError naming the point and the reason
-/// for a std::invalid_argument
+/// for a std::invalid_argument; std::runtime_error naming a file that changes meanwhile
 [[nodiscard]] std::string check_study(const Study& study, const StudyCheck& check, int jobs = 0);
 
 /// Measures the points that the journal in `out` does not have yet ("points.jsonl", or "points.2-of-3.jsonl"
@@ -75,8 +75,8 @@ struct StudyOptions {
 /// its point is left out and the others continue; the run then ends with an exception.
 /// @returns the results of this shard, by index
 /// @throws SceneError before anything runs if scene, device or patient of a point cannot be loaded
-/// @throws std::invalid_argument if the journal belongs to another study, another process writes it, or the
-/// folder cannot be used
+/// @throws std::invalid_argument if the journal belongs to another study or was measured with mathematical functions
+/// that round differently, another process writes it, or the folder cannot be used
 /// @throws std::runtime_error if a point failed (naming the first), a file of the inputs was changed since the call
 /// began (the points that were measured since are not kept), or the journal cannot be written
 [[nodiscard]] std::vector<PointResult> run_study(const Study& study, const StudyCheck& check,
