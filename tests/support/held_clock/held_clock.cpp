@@ -368,12 +368,14 @@ void HeldClock::advance_to(double t) {
   }
 }
 
-void HeldClock::run(const std::function<bool()>& ended, double pace) {
+void HeldClock::run(const std::function<bool()>& ended, const std::function<double()>& pace_now) {
   ::prctl(PR_SET_TIMERSLACK, 1);
   ask_for_the_processor(2);
   double nap = kShortestNap;
   double moved = real_seconds();
+  double pace = 0.0;
   for (unsigned look = 0; look % kLooksBetween != 0 || !ended(); ++look) {
+    if (pace_now && std::exchange(pace, pace_now()) != pace) moved = real_seconds();
     const std::optional<std::int64_t> next = next_wait();
     std::int64_t until = kNever;
     if (pace > 0.0)

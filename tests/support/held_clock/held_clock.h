@@ -56,8 +56,8 @@ class HeldClock {
   void advance_to(double t);
   void advance(double seconds) { advance_to(now() + seconds); }
   /// Lets time pass for ever, until `ended`.
-  /// @param pace  at most so many times as fast as real time; 0: as fast as it can
-  void run(const std::function<bool()>& ended, double pace = 0.0);
+  /// @param pace  gives how many times as fast as real time at most, from then on; null or 0: as fast as it can
+  void run(const std::function<bool()>& ended, const std::function<double()>& pace = nullptr);
 
  private:
   struct Threads;

@@ -2,7 +2,7 @@
 // held_clock [--pace N] [--clock FILE] -- COMMAND ... : runs a command under a held clock.
 //   --pace N      at most N times as fast as real time; 0, the default: as fast as it can
 //   --clock FILE  the clock's file: commands that name the same one share a clock; one of their launchers
-//   moves it
+//   moves it. FILE.pace, if it is there, holds another N: a test may slow the clock down where it is slow itself
 // Interrupt and termination signals go on to the command; its exit status is the launcher's.
 #include <fcntl.h>
 #include <sys/file.h>
@@ -14,6 +14,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <memory>
 #include <string>
 
@@ -25,6 +26,25 @@ volatile std::sig_atomic_t child = 0;
 void pass_on(int number) {
   if (child > 0) ::kill(child, number);
 }
+
+/// The pace of the command line, or that of the file once there is one. The file may be written at any time.
+class Pace {
+ public:
+  Pace(double fallback, const std::string& clock)
+      : pace_(fallback), file_(clock.empty() ? "" : clock + ".pace") {}
+  double operator()() {
+    constexpr unsigned kLooksBetween = 16;
+    if (file_.empty() || looks_++ % kLooksBetween != 0) return pace_;
+    double read = 0.0;
+    if (std::ifstream(file_) >> read && read > 0.0) pace_ = read;
+    return pace_;
+  }
+
+ private:
+  double pace_;
+  std::string file_;
+  unsigned looks_ = 0;
+};
 
 int usage() {
   std::fputs("usage: held_clock [--pace N] [--clock FILE] -- COMMAND ...\n", stderr);
@@ -77,6 +97,6 @@ int main(int count, char** arguments) {
     return moves || ended();
   };
   while (!ended_or_leading()) ::usleep(1000);
-  if (moves) clock->run(ended, pace);
+  if (moves) clock->run(ended, Pace(pace, file));
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }

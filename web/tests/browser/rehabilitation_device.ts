@@ -52,6 +52,11 @@ export class DeviceStation {
     return new DeviceStation(folder, clock, scene, device, address, station, (await addressOf(station)).url);
   }
 
+  /// Lets the clock of station and device pass so many times as fast as real time, at most, where a launcher holds it.
+  setPace(pace: number): void {
+    writeFileSync(`${this.clock}.pace`, String(pace));
+  }
+
   /// Pulls the cable: nothing is sent and nothing heard any more.
   cut(): Promise<void> {
     return this.device.kill();
