@@ -140,11 +140,6 @@ void remove_logs_of_points(const std::string& out, const std::vector<PointResult
   for (const PointResult& result : finished) std::filesystem::remove(log_of_point(out, result.index));
 }
 
-/// @returns what goes on with a study that was begun. --restart would begin it once more.
-const char* same_command(const RunChoices& choices) {
-  return choices.restart ? "the same command without --restart" : "the same command";
-}
-
 int run_in_queue(const RunChoices& choices) {
   if (choices.jobs != 0 || !choices.shard.empty())
     throw std::invalid_argument(
@@ -180,12 +175,13 @@ int run_in_queue(const RunChoices& choices) {
   report_quarantined(choices.out, study, queued);
   if (static_cast<int>(queued.results.size()) + queued.quarantined_points == point_count(study))
     throw std::runtime_error(fmt::format(
-        "{} of {} points are quarantined; the others are in {}. When the cause is mended: {} --retry",
+        "{} of {} points are quarantined; the others are in {}. When the cause is mended: the same "
+        "command {} --retry",
         queued.quarantined_points, point_count(study), choices.out,
-        choices.restart ? "the same command without --restart and with" : "the same command with"));
-  throw std::runtime_error(
-      fmt::format("stopped with {} of {} points; workers go on, and {} goes on collecting",
-                  queued.results.size(), point_count(study), same_command(choices)));
+        choices.restart ? "without --restart and with" : "with"));
+  throw std::runtime_error(  // --restart would begin it once more
+      fmt::format("stopped with {} of {} points; workers go on, and the same command{} goes on collecting",
+                  queued.results.size(), point_count(study), choices.restart ? " without --restart" : ""));
 }
 
 /// Shows number and pace of the points that this worker has measured: in place on a terminal, otherwise in a line each

@@ -187,8 +187,7 @@ QueuedResults run_on_queue(const Study& study, const StudyCheck& check, const st
     if (!begun)
       throw std::runtime_error(
           "stopped while the server is away: it may have begun the study again or not, what the journal has "
-          "is "
-          "kept. Type the same command again");
+          "is kept. Type the same command again");
   } catch (...) {
     failure = std::current_exception();
   }

@@ -72,8 +72,8 @@ constexpr const char* kTake = R"(WITH next AS MATERIALIZED (
   FROM next WHERE points.study = :study AND points.point = next.point
   RETURNING points.point)";
 
-// Stores only if the study still has the libm of what is stored: another worker may have set its own while this one was cut
-// off. The key's lock waits for claim_libm(), but not for another kFinish.
+// Stores only if the study still has the libm of what is stored: another worker may have set its own while this one
+// was cut off. The key's lock waits for claim_libm(), but not for another kFinish.
 // @returns one row: whether the study is there, whether it has this libm, and a point that had another result, with
 // where that was measured; -1: none.
 constexpr const char* kFinish = R"(WITH sent AS MATERIALIZED (
@@ -142,10 +142,9 @@ std::string remedy_of(const std::string& why) {
 /// @throws std::invalid_argument
 [[noreturn]] void refuse_libm(bool of_journal) {
   throw std::invalid_argument(fmt::format(
-      "{} sine, exponential or another mathematical function rounds differently from that of "
-      "the machines that measured points of the study, so that results would differ; {}, or measure all "
-      "again on "
-      "one type of machine (phalanx study run --restart)",
+      "{} sine, exponential or another mathematical function rounds differently from that of the machines "
+      "that measured points of the study, so that results would differ; {}, or measure all again on one "
+      "type of machine (phalanx study run --restart)",
       of_journal ? "the points of the journal were measured on a machine whose" : "this machine's",
       of_journal ? "use another --out folder"
                  : "work on machines with the same processor type and the same libm"));
@@ -357,8 +356,8 @@ void StudyQueue::find_study(Session& session, const JournalHeader& header) {
   if (!session.sql.got_data()) study_ = 0;
 }
 
-/// Compares libm_ with the study's, which it sets if no result and no living worker depends on it. Keeps the study's row
-/// locked until the transaction ends.
+/// Compares libm_ with the study's, which it sets if no result and no living worker depends on it. Keeps the study's
+/// row locked until the transaction ends.
 void StudyQueue::claim_libm(Session& session, bool of_journal) {
   std::string known = libm_;
   int bound = 0;

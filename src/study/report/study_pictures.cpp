@@ -13,7 +13,7 @@ namespace phalanx {
 namespace {
 
 constexpr std::size_t kMostSlices = 12;      // heat maps of a quantity
-constexpr std::size_t kMostCells = 200'000;  // of all maps of a page, about 15 MB
+constexpr std::size_t kMostCells = 200'000;  // of all maps of a page
 constexpr std::size_t kMostBars = 60;
 constexpr std::size_t kMostBands = 3;         // more bands hide each other
 constexpr std::size_t kColumnsOfHalfMap = 7;  // up to here two maps fit beside each other

@@ -74,6 +74,15 @@ class StudyQueueTest : public ::testing::Test {
   }
   /// Puts the study into the queue without waiting for results.
   void create(double lease_s = kLongLease) const { StudyQueue(address()).create(header(), lease_s, false); }
+  /// The same for points that read `file`. @returns their check
+  [[nodiscard]] StudyCheck create_reading(const std::filesystem::path& file) const {
+    const StudyCheck check = [file](const Overrides&) {
+      return StudyInputs{.text = "mass 1", .files = {}, .read = {file}};
+    };
+    StudyQueue(address()).create({.study = study_, .inputs = check_study(study_, check), .commit = "test"},
+                                 kLongLease, false);
+    return check;
+  }
   [[nodiscard]] QueueWork work(const TrialFunction& trial, int jobs = 2) const {
     return work_on_queue(study_, testing::no_inputs, trial, address(),
                          {.commit = "test", .jobs = jobs, .finished = {}});
@@ -373,11 +382,7 @@ TEST_F(StudyQueueTest, AWorkerWhoseMathematicalFunctionsWereReplacedMeanwhileSto
 TEST_F(StudyQueueTest, AWorkerOneOfWhoseFilesChangesEndsAndStoresNothingMeasuredSince) {
   const auto file = folder_ / "device.toml";
   std::ofstream(file) << "mass = 1\n";
-  const auto check = [&](const Overrides&) {
-    return StudyInputs{.text = "mass 1", .files = {}, .read = {file}};
-  };
-  StudyQueue(address()).create({.study = study_, .inputs = check_study(study_, check), .commit = "test"},
-                               kLongLease, false);
+  const StudyCheck check = create_reading(file);
   const auto changing = [&](const Overrides& overrides, double k, double press, std::uint64_t seed) {
     if (testing::number_of(overrides, "synthetic.gain", 1.0) == 2.0) std::ofstream(file) << "mass = 10\n";
     return testing::synthetic_trial(overrides, k, press, seed);
@@ -441,11 +446,7 @@ TEST_F(StudyQueueTest, AWorkerEndsThoughTheFileIsBackWhenItLooks) {
 TEST_F(StudyQueueTest, AChangedFileIsNoFailureOfItsPoints) {
   const auto file = folder_ / "device.toml";
   std::ofstream(file) << "mass = 1\n";
-  const auto check = [&](const Overrides&) {
-    return StudyInputs{.text = "mass 1", .files = {}, .read = {file}};
-  };
-  StudyQueue(address()).create({.study = study_, .inputs = check_study(study_, check), .commit = "test"},
-                               kLongLease, false);
+  const StudyCheck check = create_reading(file);
   const auto gone = [&](const Overrides&, double, double, std::uint64_t) -> TrialResult {
     std::filesystem::remove(file);
     throw std::runtime_error("device.toml: cannot be opened");

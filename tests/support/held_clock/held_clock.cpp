@@ -375,7 +375,8 @@ void HeldClock::run(const std::function<bool()>& ended, const std::function<doub
   double moved = real_seconds();
   double pace = 0.0;
   for (unsigned look = 0; look % kLooksBetween != 0 || !ended(); ++look) {
-    if (pace_now && std::exchange(pace, pace_now()) != pace) moved = real_seconds();
+    const double wanted = pace_now ? pace_now() : 0.0;
+    if (std::exchange(pace, wanted) != wanted) moved = real_seconds();
     const std::optional<std::int64_t> next = next_wait();
     std::int64_t until = kNever;
     if (pace > 0.0)

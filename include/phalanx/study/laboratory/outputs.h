@@ -38,8 +38,9 @@ struct MergedStudy {
 /// Merges the journals (points*.jsonl) of `folders` with those already in `out`, and writes
 /// `out`/points.jsonl. The study can then be continued as if it had never been split.
 /// @throws std::invalid_argument naming the file if a folder holds no journal, or if journals are of
-/// different studies, inputs or programs, or of machines whose mathematical functions round differently. It also throws if a point has different results in two of them, or
-/// with a list of missing points. Nothing is written then.
+/// different studies, inputs or programs, or of machines whose mathematical functions round differently. It also
+/// throws if a point has different results in two of them, or with a list of missing points. Nothing is written
+/// then.
 [[nodiscard]] MergedStudy merge_studies(const std::vector<std::filesystem::path>& folders,
                                         const std::filesystem::path& out);
 
