@@ -48,7 +48,7 @@ TEST(PairList, NoPairThatIsNotInItComesWithinTheMarginBeforeTheHorizon) {
   MovingDigit with_coupling(ball_in_reach(300), true);
   int met = 0;
   int most = 0;
-  for (int n = 0; n < 40; ++n) {
+  for (int n = 0; n < (test::kSlowBuild ? 8 : 40); ++n) {
     MovingDigit& digit = n % 4 < 2 ? plain : with_coupling;
     aim_anywhere(random, digit, n % 2 == 0 ? 1.0 : 0.1);
     const DigitPose start = digit.pose(0.0);
@@ -71,7 +71,7 @@ TEST(PairList, NoPairThatIsNotInItComesWithinTheMarginBeforeTheHorizon) {
       }
     }
   }
-  EXPECT_GT(met, 1000);
+  EXPECT_GT(met, test::kSlowBuild ? 200 : 1000);
   EXPECT_GT(most, 256) << "more than reach the list at once";
 }
 
@@ -81,7 +81,7 @@ TEST(PairList, NoPairGoesBelowTheFloorBeforeItIsDue) {
   MovingDigit plain(ball_in_reach(300));
   MovingDigit with_coupling(ball_in_reach(300), true);
   int stepped = 0;
-  for (int n = 0; n < 60; ++n) {
+  for (int n = 0; n < (test::kSlowBuild ? 12 : 60); ++n) {
     MovingDigit& digit = n % 4 < 2 ? plain : with_coupling;
     aim_anywhere(random, digit, n % 2 == 0 ? 1.0 : 0.1);
     const DigitPose start = digit.pose(0.0);
@@ -106,7 +106,7 @@ TEST(PairList, NoPairGoesBelowTheFloorBeforeItIsDue) {
       }
     }
   }
-  EXPECT_GT(stepped, 300);
+  EXPECT_GT(stepped, test::kSlowBuild ? 60 : 300);
 }
 
 struct Stops {
@@ -166,7 +166,7 @@ TEST(FirstContact, IsTheFirstPlaceWithinTheMarginThatCloses) {
   for (const bool with_coupling : {false, true}) {
     MovingDigit digit(ball_in_reach(300), with_coupling);
     for (const double length : {1.0, 0.1}) {
-      const Stops found = check_stops(23, digit, with_coupling ? 20 : 40, test::kSanitized ? 1 : 8, length);
+      const Stops found = check_stops(23, digit, with_coupling ? 20 : 40, test::kSlowBuild ? 1 : 8, length);
       EXPECT_GT(found.stops, with_coupling ? 1 : 3);
       EXPECT_EQ(found.exhausted, 0);
     }
@@ -236,7 +236,7 @@ TEST(FirstContact, IsRightWhereTheListRunsOver) {
       SCOPED_TRACE(::testing::Message() << "seed 24 way " << n);
       aim_anywhere(random, digit, n % 2 == 0 ? 1.0 : 0.3);
       for (int k = 0; k < kSegmentsPerDigit; ++k) over += runs_over(digit, k) ? 1 : 0;
-      ASSERT_NO_FATAL_FAILURE(expect_right_stop(digit, count, test::kSanitized ? 1 : 5));
+      ASSERT_NO_FATAL_FAILURE(expect_right_stop(digit, count, test::kSlowBuild ? 1 : 5));
     }
     std::cout << crowd.name << ": " << over << " lists ran over, " << count.stops << " stops, "
               << count.exhausted << " given up\n";

@@ -329,7 +329,7 @@ struct WireCount {
 
 /// The index finger sweeps over a 2 mm wire at `speed` [rad/s] and 200 Hz, in `kWireCases` places and phases
 /// of the tick.
-constexpr int kWireCases = test::kSanitized ? 10 : 100;
+constexpr int kWireCases = test::kSlowBuild ? 10 : 100;
 WireCount sweep_over_wire(GdpMethod method, double speed) {
   WireCount count;
   for (int n = 0; n < kWireCases; ++n) {

@@ -351,11 +351,11 @@ TEST(NearPairsOfTheHand, ChangeNoBitWhereFingersSlide) {
   for (const TriangleMesh& object : {bar(300), ball(2000)}) {
     for (std::uint64_t seed = 4; seed <= 6; ++seed) {
       Twice hands(object, 800, ContactMode::kSliding);
-      play(hands, seed, test::kSanitized ? 300 : 3000);
+      play(hands, seed, test::kSlowBuild ? 300 : 3000);
       candidates += hands.candidates;
     }
   }
-  EXPECT_GT(candidates, test::kSanitized ? 10 : 1000);
+  EXPECT_GT(candidates, test::kSlowBuild ? 10 : 1000);
 }
 
 TEST(NearPairsOfTheHand, ChangeNoBit) {
@@ -373,8 +373,8 @@ TEST(NearPairsOfTheHand, ChangeNoBit) {
 // Of meshes so fine that a digit lists more than a thousand pairs.
 TEST(NearPairsOfTheHand, ChangeNoBitOfFineMeshes) {
   Twice hands(rod(200'000), 20'000);
-  play(hands, 2, test::kSanitized ? 100 : 2000);
-  if (test::kSanitized) return;
+  play(hands, 2, test::kSlowBuild ? 100 : 2000);
+  if (test::kSlowBuild) return;
   EXPECT_GT(hands.shortened, 20);
   EXPECT_GT(hands.longest_list, 1000);
 }

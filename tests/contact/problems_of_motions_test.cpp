@@ -106,7 +106,7 @@ TEST(ContactProblem, SiconosAgreesOnThoseOfMotions) { expect_siconos_agrees_on_m
 
 /// The long version, for ./test --full: more than 10,000 problems, a third of them with sanitizers.
 TEST(ManyContactProblems, SiconosAgreesOnThoseOfMotions) {
-  for (std::uint64_t seed = 1; seed <= (test::kSanitized ? 1 : 3); ++seed)
+  for (std::uint64_t seed = 1; seed <= (test::kSlowBuild ? 1 : 3); ++seed)
     expect_siconos_agrees_on_motions(seed, 7000);
 }
 

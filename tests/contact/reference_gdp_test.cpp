@@ -46,7 +46,7 @@ using test::ReferenceStop;
 
 bool runs_whole_range() {
   const char* full = std::getenv("PHALANX_FULL");
-  return !test::kSanitized && full != nullptr && *full != '\0' && std::string(full) != "0";
+  return !test::kSlowBuild && full != nullptr && *full != '\0' && std::string(full) != "0";
 }
 
 ReferenceState values_of(const GdpState& gdp) {
@@ -512,7 +512,7 @@ void expect_rare(const Compared& out) {
 
 /// What is compared happens: the hand touches, also where a nearer segment already pushes.
 void expect_touches(const Compared& all) {
-  if (test::kSanitized) return;  // few ticks
+  if (test::kSlowBuild) return;  // few ticks
   EXPECT_GT(all.stops, 0);
   EXPECT_GT(all.records, 0);
   EXPECT_GT(all.offsets, 0);
@@ -573,7 +573,7 @@ TEST(ReferenceGdp, AgreesFromItsOwnStateOverRecordingsGivenByHand) {
 }
 
 void compare_over_human_motions(bool with_coupling) {
-  const int seeds = runs_whole_range() ? 20 : test::kSanitized || with_coupling ? 1 : 3;
+  const int seeds = runs_whole_range() ? 20 : test::kSlowBuild || with_coupling ? 1 : 3;
   Compared all;
   for (const Place& place : places()) {
     SCOPED_TRACE(place.name);
@@ -583,7 +583,7 @@ void compare_over_human_motions(bool with_coupling) {
       SCOPED_TRACE(::testing::Message() << "seed " << seed);
       Beside beside(model, From::kOwnState);
       test::HumanMotion motion(model.hand.parameters(), static_cast<std::uint64_t>(seed));
-      const int ticks = test::kSanitized ? 40 : 240;
+      const int ticks = test::kSlowBuild ? 40 : 240;
       for (int n = 0; n < ticks; ++n) ASSERT_NO_FATAL_FAILURE(beside.tick(motion.next(0.005)));
       beside.out.print(place.name + " human, seed " + std::to_string(seed));
       expect_rare(beside.out);
@@ -610,7 +610,7 @@ TEST(ReferenceGdp, AgreesTickByTickOverRandomMotions) {
       Beside beside(model, From::kProgramsState);
       test::Random random(static_cast<std::uint64_t>(seed));
       const HandParameters& hand = model.hand.parameters();
-      const int phases = test::kSanitized ? 2 : 7;
+      const int phases = test::kSlowBuild ? 2 : 7;
       JointArray from = hand.open_angle;
       for (int phase = 0; phase < phases; ++phase) {
         JointArray goal{};
@@ -633,7 +633,7 @@ TEST(ReferenceGdp, AgreesTickByTickOverRandomMotions) {
     }
   }
   expect_touches(sum);
-  if (!test::kSanitized) {
+  if (!test::kSlowBuild) {
     EXPECT_GT(sum.renewed, 0);
     EXPECT_GT(sum.fading, 0);
   }

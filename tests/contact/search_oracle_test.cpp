@@ -145,7 +145,7 @@ void check_all_cases(std::uint64_t seed, int poses) {
 }
 
 TEST(SearchOracle, DistanceBoundAndPatchEqualAllPairsOfTriangles) {
-  check_all_cases(404, test::kSanitized ? 3 : 15);
+  check_all_cases(404, test::kSlowBuild ? 3 : 15);
 }
 
 // A pair that is 1 ulp beside the answer, a lane that was left out, a box too small: seldom, so for long.

@@ -15,6 +15,7 @@
 #include "phalanx/scene/build_model.h"
 #include "phalanx/scene/scene.h"
 #include "phalanx/step/haptic_step.h"
+#include "support/sanitized.h"
 
 namespace phalanx {
 namespace {
@@ -247,7 +248,8 @@ TEST(PlanGrasp, HoldsACubeFromAStatedSide) {
 
 /// Other hands: the shipped profiles, and a left hand. The stiff hand's ranges do not suffice for every type.
 TEST(ManyGrasps, OfOtherHandsFulfilTheirConditionsToo) {
-  for (const std::string profile : {"small-woman", "large-man", "stiff-hand"}) {
+  for (const std::string profile : {"stiff-hand", "small-woman", "large-man"}) {
+    if (test::kSlowBuild && profile != "stiff-hand") return;
     SCOPED_TRACE(profile);
     const HapticModel model = build_model(load_scene("wave", {{"hand.profile", "\"" + profile + "\""}}));
     for (const auto& [type, mesh] : cases()) {

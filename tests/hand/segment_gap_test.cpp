@@ -21,8 +21,8 @@
 namespace phalanx {
 namespace {
 
-constexpr int kSteps = test::kSanitized ? 10 : 30;   ///< of the range of a joint
-constexpr int kCmcSteps = test::kSanitized ? 4 : 9;  ///< of the range of each of two joints
+constexpr int kSteps = test::kSlowBuild ? 10 : 30;   ///< of the range of a joint
+constexpr int kCmcSteps = test::kSlowBuild ? 4 : 9;  ///< of the range of each of two joints
 constexpr double kGap = 1e-3;
 constexpr double kCmcReach = 14e-3;  // [m]
 constexpr double kWebGap = 17e-3;    // [m] how far the fold of the web opens

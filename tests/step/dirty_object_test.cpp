@@ -117,7 +117,7 @@ TriangleMesh through_each_other() {
   return mesh;
 }
 
-constexpr int kPlaces = test::kSanitized ? 15 : 100;
+constexpr int kPlaces = test::kSlowBuild ? 15 : 100;
 
 class DirtyObject : public ::testing::TestWithParam<DirtyCase> {};
 
@@ -161,7 +161,7 @@ INSTANTIATE_TEST_SUITE_P(
                       DirtyCase{"ball and box through each other", through_each_other, kSoup | kFlipped}),
     [](const auto& which) { return "Case" + std::to_string(which.index); });
 
-constexpr int kFilePlaces = test::kSanitized ? 30 : 120;
+constexpr int kFilePlaces = test::kSlowBuild ? 30 : 120;
 
 class TestModel : public ::testing::TestWithParam<const char*> {};
 

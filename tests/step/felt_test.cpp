@@ -274,7 +274,7 @@ TEST(GdpFelt, WhatPenetratesIsFeltAndNoForceJumpsOverHumanMotions) {
       SCOPED_TRACE(::testing::Message() << name << " seed " << seed);
       Player player(model, scene.parameters);
       test::HumanMotion motion(model.hand.parameters(), static_cast<std::uint64_t>(seed));
-      const int ticks = test::kSanitized ? 200 : 2000;
+      const int ticks = test::kSlowBuild ? 200 : 2000;
       for (int n = 0; n < ticks; ++n) player.tick(motion.next(scene.parameters.period()));
       player.felt.print(std::string(name) + " human, seed " + std::to_string(seed));
       all.add(player.felt);

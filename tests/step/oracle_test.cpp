@@ -39,9 +39,10 @@ class OracleOnScene : public ::testing::TestWithParam<OracleCase> {
 
   void expect_clear(const Snapshot& snapshot, bool distances) {
     for (std::size_t s = 0; s < kSegments; ++s) {
+      if (test::kSlowBuild && snapshot.tick % 4 != 0) continue;
       ASSERT_FALSE(segment_[s].collides(snapshot.gdp_pose[s], object_))
           << segment_name(static_cast<int>(s)) << " at tick " << snapshot.tick;
-      if (!distances) continue;
+      if (!distances || test::kSlowBuild) continue;
       ASSERT_GE(segment_[s].distance(snapshot.gdp_pose[s], object_),
                 scene_.parameters.contact.margin - kOracleTolerance)
           << segment_name(static_cast<int>(s)) << " at tick " << snapshot.tick;
@@ -159,13 +160,13 @@ TEST_P(OracleOnScene, NothingPenetratesOverTheWholeMotion) {
 }
 
 TEST_P(OracleOnScene, NothingPenetratesOverASeededMotion) {
-  expect_clear_over_seeded_motion(2026, test::kSanitized ? 600 : 1000);
+  expect_clear_over_seeded_motion(2026, test::kSlowBuild ? 300 : 1000);
   EXPECT_GT(contacts_, 100);
 }
 
 TEST_P(OracleOnScene, NothingPenetratesAtAThousandSeededPoses) {
-  expect_clear_at_seeded_poses(2026, 1000);
-  EXPECT_GT(contacts_, 100);
+  expect_clear_at_seeded_poses(2026, test::kSlowBuild ? 200 : 1000);
+  EXPECT_GT(contacts_, test::kSlowBuild ? 20 : 100);
 }
 
 /// The long version, for ./test --soak.

@@ -396,7 +396,7 @@ double work_of_a_loop(double mu, ForceNormal normal = ForceNormal::kInterpolated
 }
 
 TEST(Sliding, AClosedPathGivesBackWhatItTookAndFrictionTakesMore) {
-  if (test::kSanitized)
+  if (test::kSlowBuild)
     GTEST_SKIP() << "no other way through the code than the drags, but 30,000 ticks of it";
   for (const ForceNormal normal : {ForceNormal::kInterpolated, ForceNormal::kContact}) {
     const double without = work_of_a_loop(0.0, normal);
@@ -449,7 +449,7 @@ TurningOverABall turning_over_a_ball(ForceNormal normal, int triangles) {
 
 TEST(Sliding, TheForceTurnsWithTheSurfaceAndNotWithItsTriangles) {
   for (const int triangles : {1000, 20000}) {
-    if (test::kSanitized && triangles > 1000) continue;
+    if (test::kSlowBuild && triangles > 1000) continue;
     const TurningOverABall turning = turning_over_a_ball(ForceNormal::kInterpolated, triangles);
     const TurningOverABall features = turning_over_a_ball(ForceNormal::kContact, triangles);
     std::printf("%d triangles: %.3f / r, %.2f mrad in a tick; of the features %.2f / r, %.2f mrad\n",

@@ -210,11 +210,11 @@ Felt sweep(const Sweep& s, int hand_triangles = 2250) {
 /// with facets so small that a face's own normal at a crease is told from what the finger's rolling makes.
 constexpr std::array kFingers{2250, 60000};
 std::vector<int> fingers_for_creases() {
-  return test::kSanitized ? std::vector{kFingers[0]} : std::vector(kFingers.begin(), kFingers.end());
+  return test::kSlowBuild ? std::vector{kFingers[0]} : std::vector(kFingers.begin(), kFingers.end());
 }
 
 /// Of so many places: under a sanitizer those in the middle.
-constexpr int share(int places) { return test::kSanitized ? places / 8 : places; }
+constexpr int share(int places) { return test::kSlowBuild ? places / 8 : places; }
 
 Sweep over(const char* name, TriangleMesh mesh, const Vec3& from, const Vec3& direction, const Vec3& along,
            const Vec3& heading, int places, double reach = 0.04) {
@@ -292,7 +292,7 @@ TEST_P(SweepOverSphere, TheForceTurnsByAtMostATwentiethMorePerMillimetreThanOnAn
     EXPECT_LE(turning.most * kRadius, 1.05);
     EXPECT_LE(turning.off_radial, 0.5 * kDegree);
   }
-  if (test::kSanitized) return;  // so few places need not hold the worst
+  if (test::kSlowBuild) return;  // so few places need not hold the worst
   const Turning flat = turning_over(line(), 0.0, 2250);
   std::printf("%s, flat: %.4f of 1/r at most %.3f off\n", line().name, flat.most * kRadius,
               flat.off_radial / kDegree);
@@ -309,7 +309,7 @@ TEST_P(SweepOverSphere, TheForceOfSlidingContactsTurnsWithTheSphere) {
   std::printf("%s, sliding: %.4f of 1/r at most, of the features' normals %.2f\n", line().name,
               turning.most * kRadius, features.most * kRadius);
   EXPECT_LE(turning.most * kRadius, 1.15);
-  if (test::kSanitized) return;
+  if (test::kSlowBuild) return;
   EXPECT_GE(features.most * kRadius, 4.0) << "the features' own normals must fail by far";
 }
 
@@ -422,13 +422,13 @@ TEST_P(SweepOverFile, JumpsNoMoreThanItsFacetsTurn) {
   const Vec3 from = 0.5 * (low + high) - (0.5 * size[thinnest] + 0.012) * along -
                     0.5 * kPitch * GetParam().places * direction +
                     GetParam().beside * size[3 - longest - thinnest] * heading +
-                    (test::kSanitized ? kPitch * GetParam().sanitized_shift : 0.0) * direction;
+                    (test::kSlowBuild ? kPitch * GetParam().sanitized_shift : 0.0) * direction;
   Sweep line = over(GetParam().file, mesh, from, direction, along, heading, GetParam().places, 0.055);
   line.step.reset();  // what the docs say of it was measured on made objects
   for (const int finger : fingers_for_creases()) {
     if (finger != kFingers[0] && !GetParam().fine) continue;
     const Felt felt = sweep(line, finger);
-    EXPECT_GE(felt.compared, test::kSanitized ? share(GetParam().places) / 2 : GetParam().compared);
+    EXPECT_GE(felt.compared, test::kSlowBuild ? share(GetParam().places) / 2 : GetParam().compared);
   }
 }
 

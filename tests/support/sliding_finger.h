@@ -26,7 +26,7 @@ inline TriangleMesh block(double breadth, double height, int triangles = 12) {
 
 /// A ball of 60 mm below the origin.
 inline TriangleMesh ball() {
-  return moved(make_sphere(0.06, kSanitized ? 1000 : 20000), at(0.0, 0.0, -0.03));
+  return moved(make_sphere(0.06, kSlowBuild ? 1000 : 20000), at(0.0, 0.0, -0.03));
 }
 
 /// Places the fingertip 2 mm above the origin, and presses by `depth` below the place where it touches.

@@ -315,7 +315,7 @@ TEST(TerminatedRun, LetsGoWhileStandardErrorTakesNothing) {
 }
 
 /// Parts that run side by side: those failures whose call stack's hash leaves this remainder.
-constexpr std::size_t kParts = 4;
+constexpr std::size_t kParts = 8;
 using Part = std::tuple<std::size_t, std::size_t>;  // number of the command, remainder
 
 void check_part(const Part& of) {
@@ -332,9 +332,9 @@ void check_part(const Part& of) {
   check_all(*command, mine);
 }
 
-class EveryFourthInjectedFailure : public ::testing::TestWithParam<Part> {};
-TEST_P(EveryFourthInjectedFailure, LosesNothingThatWasPromised) { check_part(GetParam()); }
-INSTANTIATE_TEST_SUITE_P(Of, EveryFourthInjectedFailure,
+class EveryEighthInjectedFailure : public ::testing::TestWithParam<Part> {};
+TEST_P(EveryEighthInjectedFailure, LosesNothingThatWasPromised) { check_part(GetParam()); }
+INSTANTIATE_TEST_SUITE_P(Of, EveryEighthInjectedFailure,
                          ::testing::Combine(::testing::Range<std::size_t>(0, kCommands.size()),
                                             ::testing::Values<std::size_t>(0)));
 

@@ -10,6 +10,7 @@
 #include "mesh/mesh_checks.h"
 #include "mesh/repair/repair.h"
 #include "phalanx/mesh/primitives.h"
+#include "support/sanitized.h"
 
 namespace phalanx::mesh {
 namespace {
@@ -48,11 +49,13 @@ TriangleMesh damage(const TriangleMesh& mesh, double noise, std::mt19937& random
   return soup;
 }
 
+constexpr unsigned kSeeds = test::kSlowBuild ? 3 : 10;
+
 class DamagedMesh : public ::testing::TestWithParam<Case (*)()> {};
 
 TEST_P(DamagedMesh, IsRepairedBackToTheSameClosedSolid) {
   const TriangleMesh made = GetParam()().mesh;
-  for (unsigned seed = 1; seed <= 10; ++seed) {
+  for (unsigned seed = 1; seed <= kSeeds; ++seed) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
     std::mt19937 random(seed);
     MeshReport report;
@@ -70,7 +73,7 @@ TEST_P(DamagedMesh, IsRepairedBackToTheSameClosedSolid) {
 
 TEST_P(DamagedMesh, IsClosedAgainWhenEveryCornerIsALittleOff) {
   const TriangleMesh made = GetParam()().mesh;
-  for (unsigned seed = 1; seed <= 10; ++seed) {
+  for (unsigned seed = 1; seed <= kSeeds; ++seed) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
     std::mt19937 random(seed);
     MeshReport report;
@@ -84,7 +87,7 @@ TEST_P(DamagedMesh, IsClosedAgainWhenEveryCornerIsALittleOff) {
 
 TEST_P(DamagedMesh, NeedsNoSecondRepair) {
   const TriangleMesh made = GetParam()().mesh;
-  for (unsigned seed = 1; seed <= 10; ++seed) {
+  for (unsigned seed = 1; seed <= kSeeds; ++seed) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
     std::mt19937 random(seed);
     TriangleMesh soup = damage(made, seed % 2 == 0 ? 0.0 : 0.3e-6, random);

@@ -27,7 +27,7 @@ TriangleMesh teapot(int n) { return make_teapot(0.25, n); }
 class StitchedSolid : public ::testing::TestWithParam<TriangleMesh (*)(int)> {};
 
 TEST_P(StitchedSolid, IsOneClosedManifoldOfGenusOneFrom300TrianglesOn) {
-  for (double n = 300; n < 70'000; n *= test::kSanitized ? 1.9 : 1.13) {
+  for (double n = 300; n < 70'000; n *= test::kSlowBuild ? 1.9 : 1.13) {
     const TriangleMesh mesh = GetParam()(static_cast<int>(n));
     ASSERT_EQ(test::manifold_flaw(mesh), "") << n;
     ASSERT_EQ(test::euler_characteristic(mesh), 0) << n;
@@ -36,7 +36,7 @@ TEST_P(StitchedSolid, IsOneClosedManifoldOfGenusOneFrom300TrianglesOn) {
 }
 
 TEST_P(StitchedSolid, HasAboutAsManyTrianglesAsAskedUpToAMillion) {
-  constexpr int kMost = test::kSanitized ? 100'000 : 1'000'000;
+  constexpr int kMost = test::kSlowBuild ? 100'000 : 1'000'000;
   for (double n = 300; n <= kMost; n *= 1.5) {
     const TriangleMesh mesh = GetParam()(static_cast<int>(n));
     EXPECT_NEAR(static_cast<double>(mesh.triangles.size()) / n, 1.0, 0.15) << n;
@@ -48,7 +48,7 @@ TEST_P(StitchedSolid, HasAboutAsManyTrianglesAsAskedUpToAMillion) {
 }
 
 TEST_P(StitchedSolid, DoesNotCrossItself) {
-  for (double n = 300; n < 20'000; n *= test::kSanitized ? 1.9 : 1.31)
+  for (double n = 300; n < 20'000; n *= test::kSlowBuild ? 1.9 : 1.31)
     ASSERT_EQ(test::self_intersections(GetParam()(static_cast<int>(n))), 0U) << n;
 }
 

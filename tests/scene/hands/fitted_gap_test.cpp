@@ -48,7 +48,7 @@ std::array<double, kPalm> rim_distances(const Profile& profile) {
   rims[0] = near_cmc;
   std::mt19937_64 random(31);
   std::array<double, kPalm> largest{};
-  for (int n = 0; n < (test::kSanitized ? 8 : 30); ++n) {
+  for (int n = 0; n < (test::kSlowBuild ? 8 : 30); ++n) {
     JointArray q{};
     for (std::size_t j = 0; j < kJoints; ++j) {
       std::uniform_real_distribution<double> u(fitted.parameters.min_angle[j],

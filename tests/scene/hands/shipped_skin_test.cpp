@@ -65,7 +65,7 @@ class Solid {
 
 double deepest(const std::vector<Vec3>& points, const Solid& solid) {
   double depth = 0.0;
-  constexpr std::size_t kEach = test::kSanitized ? 16 : 1;
+  constexpr std::size_t kEach = test::kSlowBuild ? 16 : 1;
   for (std::size_t i = 0; i < points.size(); i += kEach) depth = std::max(depth, solid.depth(points[i]));
   return depth;
 }
@@ -232,7 +232,7 @@ TEST(AdultSkin, StaysCloseToTheSegmentsAtRandomPoses) {
   constexpr std::uint64_t kSeed = 71;
   Random random(kSeed);
   std::array<double, kRegions> largest{};
-  for (int n = 0; n < (test::kSanitized ? 4 : 24); ++n) {
+  for (int n = 0; n < (test::kSlowBuild ? 4 : 24); ++n) {
     JointArray angle{};
     for (std::size_t j = 0; j < kJoints; ++j)
       angle[j] = random.between(loaded.parameters.min_angle[j], loaded.parameters.max_angle[j]);
