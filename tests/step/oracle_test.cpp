@@ -160,7 +160,7 @@ TEST_P(OracleOnScene, NothingPenetratesOverTheWholeMotion) {
 }
 
 TEST_P(OracleOnScene, NothingPenetratesOverASeededMotion) {
-  expect_clear_over_seeded_motion(2026, test::kSlowBuild ? 300 : 1000);
+  expect_clear_over_seeded_motion(2026, test::kSlowBuild ? 600 : 1000);
   EXPECT_GT(contacts_, 100);
 }
 
