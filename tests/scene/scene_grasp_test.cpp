@@ -16,6 +16,7 @@
 #include "phalanx/scene/scene_file.h"
 #include "phalanx/step/haptic_step.h"
 #include "scene/expect_error.h"
+#include "support/sanitized.h"
 
 namespace phalanx {
 namespace {
@@ -79,6 +80,7 @@ TEST(SceneGrasp, OfTheStatedHandAndObjectIsTakenFromTheScene) {
 TEST(SceneGrasp, IsPlannedAgainForAnotherHandObjectTypeSeedOrDirection) {
   const SceneFile file = ball_file();
   const Overrides planned = resolve(file.scene({}), {}).planned;
+  int tried = 0;
   for (const auto& [key, value] : Overrides{{"hand.profile", "\"small-woman\""},
                                             {"objects.0.diameter_mm", "46"},
                                             {"grasp.type", "\"pinch\""},
@@ -87,6 +89,7 @@ TEST(SceneGrasp, IsPlannedAgainForAnotherHandObjectTypeSeedOrDirection) {
                                             {"hand.side", "\"left\""},
                                             {"grasp.forearm", "[0, -1, 0]"},
                                             {"grasp.palm", "[0, 0, -1]"}}) {
+    if (test::kSlowBuild && ++tried > 3) break;
     Overrides changed = planned;
     changed.emplace_back(key, value);
     EXPECT_NE(resolve(file.scene(changed), {}).planned, Overrides{}) << key;

@@ -11,6 +11,7 @@
 #include "phalanx/scene/resolved_scene.h"
 #include "phalanx/step/haptic_step.h"
 #include "scene/expect_error.h"
+#include "support/sanitized.h"
 
 namespace phalanx {
 namespace {
@@ -135,7 +136,9 @@ TEST(ExampleOfTheDocuments, TouchesWithTheTipOfTheIndexFinger) {
 
 std::vector<std::string> names() {
   std::vector<std::string> result;
-  for (const auto& [name, digits] : expected_digits()) result.push_back(name);
+  int number = 0;
+  for (const auto& [name, digits] : expected_digits())
+    if (!test::kSlowBuild || number++ % 4 == 2) result.push_back(name);
   return result;
 }
 

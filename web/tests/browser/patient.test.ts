@@ -15,7 +15,7 @@ import { shoot } from "./support/pictures";
 import { until } from "./support/until";
 
 const kTap = 88; // [pixels]
-const kScale = process.env["PHALANX_SCREENSHOTS"] === undefined ? 0.5 : 1; // of the pixels that are drawn: a quarter of them takes a quarter of the time
+const kScale = process.env["PHALANX_LARGE_PICTURES"] === undefined ? 0.5 : 1; // of the pixels that are drawn: a quarter of them takes a quarter of the time
 const sizes = { phone: { width: 390, height: 844 }, laptop: { width: 1280, height: 800 }, projector: { width: 1920, height: 1080 } };
 type Size = keyof typeof sizes;
 const kEach: Readonly<Record<Size, number>> = { phone: 1, laptop: 3, projector: 9 }; // every so many states: words are clipped on the smallest first
