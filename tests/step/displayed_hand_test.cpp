@@ -128,7 +128,7 @@ class Drawn {
   void expect_apart(const test::FclMesh& a, const Pose& X, const test::FclMesh& b,
                     const std::string& what) const {
     ASSERT_FALSE(a.collides(X, b)) << what;
-    if (test::kSlowBuild) return;  // most of the time is FCL's
+    if (test::kSlowBuild) return;  // distances take FCL most of the time; the release build has them
     ASSERT_GE(a.distance(X, b), margin_ - 10e-9) << what;
   }
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""trace_test.py PROGRAM: the traced boundary of studies/devices.toml lies within a step of the grid of the scanned one, for a fifth of its trials."""
+"""trace_test.py PROGRAM: the traced limits of studies/devices.toml are within a step of the scanned ones, for a fifth of the trials."""
 
 from __future__ import annotations
 

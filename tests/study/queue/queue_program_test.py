@@ -3,7 +3,7 @@
 """queue_program_test.py PROGRAM [CASE]: studies on a queue with the program itself, on a server that this test starts as an ordinary user.
 
 Four workers in two network namespaces are killed, and the server with them; then the server's certificate and password. With PHALANX_FULL
-workers are killed to the end of 105 points, otherwise four times within 30. Exit code 77 (skipped), with the reason, if PostgreSQL is not
+workers are killed to the end of 105 points, otherwise at most four times within 30. Exit code 77 (skipped), with the reason, if PostgreSQL is not
 installed.
 """
 
@@ -273,7 +273,9 @@ class Killed(Queue):
             time.sleep(0.1)
             done = finished()
             fresh = done - done_then
-            if done == points or fresh == 0 or kills["worker"] == MOST_KILLS or (time.monotonic() - last < KILL_EVERY and fresh < points // 10):
+            if done == points or fresh == 0 or kills["worker"] == MOST_KILLS:
+                continue
+            if time.monotonic() - last < KILL_EVERY and fresh < points // 10:
                 continue
             done_before = set(self.server.sql("SELECT point || ' ' || md5(result) FROM phalanx.points WHERE result IS NOT NULL").split("\n"))
             which = chance.randrange(4)
@@ -297,8 +299,8 @@ class Killed(Queue):
         self.assertEqual(running.returncode, 0, self.log())
         for worker in workers:
             self.assertEqual(worker.wait(LONGEST), 0, self.log())
-        self.assertGreaterEqual(kills["worker"], 4)
-        self.assertGreaterEqual(kills["server"], 2)
+        self.assertGreaterEqual(kills["worker"], 4 if FULL else 2)  # a fast computer has measured 30 points before the fourth
+        self.assertGreaterEqual(kills["server"], 2 if FULL else 1)
         self.assertEqual(self.server.sql("SELECT count(*), count(DISTINCT point) FROM public.stored"), f"{points}|{points}")
         self.assertEqual(self.server.sql("SELECT sum(failures) FROM phalanx.points"), "0", "a kill of a worker is no failure of a point")
 
