@@ -308,13 +308,12 @@ TEST(Gdp, TheOpenHandOnTheObjectIsASetUpError) {
 }
 
 /// Least distance of the index finger's middle and distal segments from the object at these angles.
-double index_clearance(const test::Setup& model, const JointArray& angle) {
+double index_clearance(const test::Setup& model, const JointArray& angle, SearchScratch& scratch) {
   HandPoses poses;
   model.hand.poses(angle, poses);
   double least = 1e-3;
   for (int k = 1; k < kSegmentsPerDigit; ++k) {
     const std::size_t s = static_cast<std::size_t>(segment_index(1, k));
-    SearchScratch scratch(model.trees()[s]);
     const PlacedSegment placed{model.trees()[s], poses.digit[1].segment[static_cast<std::size_t>(k)],
                                scratch};
     least = std::min(least, distance(placed, model.object.tree(), 1e-3));
@@ -346,10 +345,11 @@ WireCount sweep_over_wire(GdpMethod method, double speed) {
     // Dense sampling, 0.0005 rad apart, so that no point of the finger moves farther than the margin between
     // two samples: nothing is within the margin before the stop, and something is at the stop.
     const double stop = index_gdp(hand.now(), 0);
+    SearchScratch scratch(model.trees());
     for (double sampled = 0.0; sampled < stop - 1e-6; sampled += 5e-4) {
-      if (index_clearance(model, index_angles(sampled)) <= kGdpMargin) ++count.early;
+      if (index_clearance(model, index_angles(sampled), scratch) <= kGdpMargin) ++count.early;
     }
-    if (index_clearance(model, index_angles(stop)) > kGdpMargin) ++count.early;
+    if (index_clearance(model, index_angles(stop), scratch) > kGdpMargin) ++count.early;
   }
   return count;
 }
