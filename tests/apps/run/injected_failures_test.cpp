@@ -314,7 +314,8 @@ TEST(TerminatedRun, LetsGoWhileStandardErrorTakesNothing) {
   EXPECT_EQ(steps.back().largest_torque, 0.0);
 }
 
-/// Parts that run side by side: those failures whose call stack's hash, divided by `parts`, leaves this remainder.
+/// Parts that run side by side: those failures whose call stack's hash, divided by the number of parts, leaves
+/// this remainder.
 constexpr std::size_t kParts = 8;
 using Part = std::tuple<std::size_t, std::size_t>;  // number of the command, remainder
 

@@ -3,8 +3,8 @@
 """queue_program_test.py PROGRAM [CASE]: studies on a queue with the program itself, on a server that this test starts as an ordinary user.
 
 Four workers in two network namespaces are killed, and the server with them; then the server's certificate and password. With PHALANX_FULL
-workers are killed to the end of 105 points, otherwise at most four times within 30. Exit code 77 (skipped), with the reason, if PostgreSQL is not
-installed.
+workers are killed to the end of 105 points, otherwise at most four times within 30. Exit code 77 (skipped), with the reason, if
+PostgreSQL is not installed.
 """
 
 from __future__ import annotations
